@@ -1,0 +1,129 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command_registry.h"
+#include "core/base/error.h"
+#include "core/scene/nearest_name.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr int kUnforeseen = 1;
+constexpr int kMostThreads = 256;
+
+/// What every command line holds beside the command's own options.
+struct CommonWords {
+  std::vector<std::string> overrides;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// A command as it is known to the parser.
+struct Declared {
+  CLI::App* parser;
+  std::function<int(const CommonOptions&)> run;
+};
+
+void addCommonOptions(CLI::App& parser, CommonWords& words) {
+  parser
+      .add_option("--set", words.overrides,
+                  "Changes the scene: /json/pointer=VALUE, with a JSON value or a bare word. Repeatable.")
+      ->type_name("/POINTER=VALUE")
+      ->allow_extra_args(false)
+      ->group("Every command");
+  parser.add_option("--threads", words.threads, "Threads to use; 0 takes what the machine has.")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMostThreads))
+      ->default_str("0")
+      ->group("Every command");
+  parser.add_flag("--quiet", words.quiet, "No progress.")->group("Every command");
+}
+
+CommonOptions commonOptions(const CommonWords& words) {
+  CommonOptions options;
+  std::vector<Fault> faults;
+  for (const std::string& word : words.overrides) {
+    try {
+      options.overrides.push_back(Override::parse(word));
+    } catch (const InputError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  options.threads = words.threads;
+  options.quiet = words.quiet;
+  return options;
+}
+
+/// The command comes first; says so where it does not.
+void requireCommand(const std::vector<std::string>& arguments, const std::vector<Command>& commands) {
+  const std::string& first = arguments.front();
+  if (first == "--help" || first == "-h") return;
+  std::vector<std::string_view> names;
+  for (const Command& command : commands) names.push_back(command.name);
+  if (std::find(names.begin(), names.end(), first) != names.end()) return;
+  std::string message = "expected a command first (" + quotedList(names) + "), found \"" + first + "\"";
+  if (first.ends_with(".json")) message += "; did you mean: migiwa view " + first;
+  throw InputError("migiwa", message);
+}
+
+int parseAndRun(std::vector<std::string> arguments) {
+  CLI::App program("Migiwa: particle fluids at walls.", "migiwa");
+  program.footer("Without a command, the window opens. More about a command: migiwa COMMAND --help");
+  program.require_subcommand(1);
+
+  const std::vector<Command> commands = allCommands();
+  CommonWords words;
+  std::vector<Declared> declared;
+  for (const Command& command : commands) {
+    CLI::App* const parser = program.add_subcommand(command.name, command.summary);
+    declared.push_back({parser, command.setUp(*parser)});
+    addCommonOptions(*parser, words);
+  }
+
+  if (arguments.empty()) arguments.emplace_back("view");
+  requireCommand(arguments, commands);
+  std::reverse(arguments.begin(), arguments.end());  // the parser takes them from the back
+  try {
+    program.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help
+    const auto chosen = program.get_subcommands();
+    std::cerr << "migiwa: " << error.what() << "\nTry: migiwa "
+              << (chosen.empty() ? "" : chosen.front()->get_name() + " ") << "--help\n";
+    return kBadInput;
+  }
+  const auto chosen = std::find_if(declared.begin(), declared.end(),
+                                   [](const Declared& command) { return command.parser->parsed(); });
+  return chosen->run(commonOptions(words));
+}
+
+}  // namespace
+
+int runCommandLine(std::vector<std::string> arguments) {
+  try {
+    return parseAndRun(std::move(arguments));
+  } catch (const InputError& error) {
+    for (const Fault& fault : error.faults()) std::cerr << fault.text() << '\n';
+    return kBadInput;
+  } catch (const MissingError& error) {
+    std::cerr << "migiwa: " << error.what() << '\n';
+    return kSomethingMissing;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "migiwa: out of memory; a larger particle_spacing takes less\n";
+    return kUnforeseen;
+  } catch (const std::exception& error) {
+    std::cerr << "migiwa: " << error.what() << '\n';
+    return kUnforeseen;
+  }
+}
+
+}  // namespace migiwa

@@ -1,0 +1,9 @@
+#include "app/commands/command_registry.h"
+
+namespace migiwa {
+
+std::vector<Command> allCommands() {
+  return {viewCommand(), renderCommand(), simulateCommand(), checkCommand(), summaryCommand()};
+}
+
+}  // namespace migiwa

@@ -1,0 +1,36 @@
+#include "app/render/line_pass.h"
+
+namespace migiwa {
+
+LinePass::LinePass(std::span<const LineSegment> lines)
+    : program_("line"),
+      lines_(makeBuffer()),
+      layout_(makeVertexArray()),
+      count_(static_cast<GLsizei>(lines.size())) {
+  static_assert(sizeof(LineSegment) == 6 * sizeof(float), "two points without padding");
+  if (count_ > 0) {
+    glNamedBufferStorage(lines_.name(), static_cast<GLsizeiptr>(lines.size_bytes()), lines.data(), 0);
+  }
+  glVertexArrayVertexBuffer(layout_.name(), 0, lines_.name(), 0, sizeof(LineSegment));
+  glVertexArrayBindingDivisor(layout_.name(), 0, 1);
+  for (const GLuint end : {0U, 1U}) {
+    glEnableVertexArrayAttrib(layout_.name(), end);
+    glVertexArrayAttribFormat(layout_.name(), end, 3, GL_FLOAT, GL_FALSE, end * 3 * sizeof(float));
+    glVertexArrayAttribBinding(layout_.name(), end, 0);
+  }
+}
+
+void LinePass::draw(float widthPixels) const {
+  if (count_ == 0) return;
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  program_.set("width", widthPixels);
+  program_.set("lineColor", 0.16F, 0.22F, 0.30F, 0.9F);
+  program_.use();
+  glBindVertexArray(layout_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
+}
+
+}  // namespace migiwa

@@ -1,0 +1,23 @@
+// The walls' lines, anti-aliased, a fixed number of pixels wide.
+#pragma once
+
+#include <span>
+
+#include "app/render/shader_program.h"
+#include "core/boundary/surface.h"
+
+namespace migiwa {
+
+class LinePass {
+ public:
+  explicit LinePass(std::span<const LineSegment> lines);
+  void draw(float widthPixels) const;
+
+ private:
+  ShaderProgram program_;
+  GlBuffer lines_;
+  GlVertexArray layout_;
+  GLsizei count_;
+};
+
+}  // namespace migiwa

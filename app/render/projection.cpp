@@ -1,0 +1,38 @@
+#include "app/render/projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace migiwa {
+
+Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene) {
+  const Vec3d back = (camera.eye - camera.target).normalized();
+  const Vec3d right = camera.up.cross(back).normalized();
+  const Vec3d up = back.cross(right);
+  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
+  view.block<1, 3>(0, 0) = right.transpose();
+  view.block<1, 3>(1, 0) = up.transpose();
+  view.block<1, 3>(2, 0) = back.transpose();
+  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * camera.eye;
+
+  // Four decades of depth around what is looked at: enough for a close-up and for the ground's far end.
+  const double distance = (camera.eye - camera.target).norm();
+  const double near = 0.01 * distance, far = 100 * distance;
+
+  const double sceneAspect = static_cast<double>(scene.width) / scene.height;
+  const double pictureAspect = static_cast<double>(pictureWidth) / pictureHeight;
+  const double tangent =
+      std::tan(camera.fovDegrees * std::numbers::pi / 360) * std::max(1.0, pictureAspect / sceneAspect);
+  Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
+  clip(0, 0) = 1 / (tangent * sceneAspect);
+  clip(1, 1) = 1 / tangent;
+  clip(2, 2) = -(far + near) / (far - near);
+  clip(2, 3) = -2 * far * near / (far - near);
+  clip(3, 2) = -1;
+  return {view.cast<float>(), clip.cast<float>(), near, far};
+}
+
+}  // namespace migiwa

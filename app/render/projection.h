@@ -1,0 +1,25 @@
+// Where the camera sees what: matrices for OpenGL, and the rectangle of the picture that shows the scene.
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace migiwa {
+
+/// Pixels, origin in the top left corner.
+struct Rect {
+  int x = 0, y = 0, width = 1, height = 1;
+};
+
+using Mat4f = Eigen::Matrix4f;
+
+struct Projection {
+  Mat4f view = Mat4f::Identity();  ///< world to camera: right, up, backwards
+  Mat4f clip = Mat4f::Identity();  ///< camera to clip space
+  double near = 0, far = 0;        ///< distances of the depth range's ends (m)
+};
+
+/// The camera's vertical field of view holds for the whole picture. Where panels leave only `scene` of it,
+/// everything is drawn smaller, so that it still shows what the whole picture would.
+Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene);
+
+}  // namespace migiwa

@@ -1,0 +1,48 @@
+// What panels show and change. They change the view directly, and the simulation only by asking: whoever owns
+// it carries the wishes out between two steps.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "core/simulation/frame_view.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+
+/// How the simulation is doing, apart from its frame.
+struct RunStatus {
+  bool playing = false;
+  bool stopped = false;  ///< it stopped itself and cannot go on
+  std::string trouble;   ///< why
+};
+
+/// How the scene is looked at.
+struct ViewState {
+  Camera camera;
+  ClipPlane clip;
+  ColorField color = ColorField::density;
+  bool walls = true;
+  bool panels = true;
+};
+
+/// What the user asked for in one frame.
+struct Wishes {
+  bool play = false, pause = false, step = false, reset = false;
+  bool settings = false;  ///< the settings were changed
+  bool savePicture = false;
+};
+
+struct PanelModel {
+  const FrameInfo& frame;
+  const RunStatus& run;
+  bool timings;  ///< show wall times, which differ from run to run
+  const Scene& scene;
+  Bounds bounds;  ///< of the scene (m)
+  Settings& settings;
+  ViewState& view;
+  Wishes& wishes;
+};
+
+}  // namespace migiwa

@@ -1,0 +1,14 @@
+// The program's panels, one file each. They are drawn one under the other in the current ImGui window.
+#pragma once
+
+#include "app/ui/panel_model.h"
+
+namespace migiwa {
+
+void simulationPanel(PanelModel& model);
+void boundaryPanel(PanelModel& model);
+void solverPanel(PanelModel& model);
+void viewPanel(PanelModel& model);
+void performancePanel(PanelModel& model);
+
+}  // namespace migiwa

@@ -1,0 +1,23 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/ui/error_plot.h"
+#include "app/ui/number_text.h"
+#include "app/ui/panels.h"
+#include "app/ui/stage_bar.h"
+#include "app/ui/widgets.h"
+
+namespace migiwa {
+
+void performancePanel(PanelModel& model) {
+  rowLabel("ms per step");
+  ImGui::TextUnformatted(milliseconds(model.frame.stepSeconds, model.timings).c_str());
+  stageBar(model.frame.stages, model.timings);
+  faintText("Mean density error by iteration");
+  // What is left of the column, within reason.
+  const float line = ImGui::GetFontSize();
+  const float height = std::clamp(ImGui::GetContentRegionAvail().y, 5.6F * line, 9 * line);
+  errorPlot(model.frame.errors, model.settings.solver.tolerance, std::floor(height));
+}
+
+}  // namespace migiwa

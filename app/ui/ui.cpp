@@ -1,0 +1,147 @@
+#include "app/ui/ui.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "app/ui/fonts.h"
+#include "app/ui/legend.h"
+#include "app/ui/panels.h"
+#include "app/ui/theme.h"
+
+namespace migiwa {
+namespace {
+
+constexpr float kFontPixels = 15;
+/// Width of the panels over the height of their text.
+constexpr float kPanelWidth = 21.4F;
+
+struct KeyPair {
+  ImGuiKey_ imgui;
+  Key key;
+};
+constexpr std::array<KeyPair, 18> kKeys{{
+    {ImGuiKey_Tab, Key::tab},
+    {ImGuiKey_LeftArrow, Key::left},
+    {ImGuiKey_RightArrow, Key::right},
+    {ImGuiKey_UpArrow, Key::up},
+    {ImGuiKey_DownArrow, Key::down},
+    {ImGuiKey_Home, Key::home},
+    {ImGuiKey_End, Key::end},
+    {ImGuiKey_Insert, Key::insert},
+    {ImGuiKey_Delete, Key::remove},
+    {ImGuiKey_Backspace, Key::backspace},
+    {ImGuiKey_Enter, Key::enter},
+    {ImGuiKey_Escape, Key::escape},
+    {ImGuiKey_Space, Key::space},
+    {ImGuiKey_A, Key::a},
+    {ImGuiKey_C, Key::c},
+    {ImGuiKey_V, Key::v},
+    {ImGuiKey_X, Key::x},
+    {ImGuiKey_Z, Key::z},
+}};
+
+void feed(ImGuiIO& io, const InputState& input) {
+  io.DeltaTime = static_cast<float>(input.seconds);
+  io.MousePos = input.mouseInside ? ImVec2(input.mouseX, input.mouseY) : ImVec2(-FLT_MAX, -FLT_MAX);
+  for (std::size_t i = 0; i < kMouseButtonCount; ++i) io.MouseDown[i] = input.buttons[i];
+  io.MouseWheel = input.wheel;
+  io.KeyCtrl = input.control;
+  io.KeyShift = input.shift;
+  io.KeyAlt = input.alt;
+  for (std::size_t i = 0; i < kKeyCount; ++i) io.KeysDown[i] = input.keys[i];
+  for (const unsigned c : input.characters) io.AddInputCharacter(c);
+}
+
+/// A heading that folds; open at first where the picture is high enough for what comes with it.
+void section(const char* title, bool open, ImFont* bold, PanelModel& model, void (*panel)(PanelModel&)) {
+  ImGui::PushFont(bold);
+  const bool shown = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  ImGui::PopFont();
+  if (shown) panel(model);
+}
+
+}  // namespace
+
+struct Ui::State {
+  ImGuiContext* context = ImGui::CreateContext();
+  Fonts fonts;
+  float pixels = kFontPixels;
+
+  State() { ImGui::SetCurrentContext(context); }
+  ~State() { ImGui::DestroyContext(context); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+};
+
+Ui::Ui(double scale) : state_(std::make_unique<State>()) {
+  state_->pixels = std::round(kFontPixels * static_cast<float>(scale));
+  state_->fonts = loadFonts(state_->pixels);
+  applyTheme(state_->pixels);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  for (const KeyPair& pair : kKeys) io.KeyMap[pair.imgui] = static_cast<int>(pair.key);
+  ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Ui::~Ui() {
+  ImGui::SetCurrentContext(state_->context);
+  ImGui_ImplOpenGL3_Shutdown();
+}
+
+Rect Ui::sceneArea(int width, int height, bool panels) const {
+  const int taken = panels ? std::min(static_cast<int>(kPanelWidth * state_->pixels), width / 2) : 0;
+  return {taken, 0, width - taken, height};
+}
+
+void Ui::begin(int width, int height, const InputState& input) {
+  ImGui::SetCurrentContext(state_->context);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  feed(io, input);
+  ImGui::NewFrame();
+}
+
+void Ui::panels(PanelModel& model, int height) {
+  const Rect scene = sceneArea(static_cast<int>(ImGui::GetIO().DisplaySize.x), height, true);
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize({static_cast<float>(scene.x), static_cast<float>(height)});
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration & ~ImGuiWindowFlags_NoScrollbar;
+  ImGui::Begin("Panels", nullptr, kFixed | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  const float lines = static_cast<float>(height) / state_->pixels;
+  ImFont* bold = state_->fonts.bold;
+  section("Simulation", true, bold, model, simulationPanel);
+  section("Boundary", true, bold, model, boundaryPanel);
+  section("Solver", lines > 26, bold, model, solverPanel);
+  section("View", lines > 33, bold, model, viewPanel);
+  section("Performance", lines > 47, bold, model, performancePanel);
+  ImGui::End();
+}
+
+void Ui::caption(const Caption& caption, const Rect& area) const {
+  drawCaption(caption, area, state_->fonts);
+}
+
+void Ui::legend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
+                const Rect& area) const {
+  drawLegend(field, range, colors, area, state_->fonts);
+}
+
+void Ui::end(bool draw) {
+  ImGui::Render();
+  if (draw) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Ui::wantsMouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool Ui::wantsKeyboard() const {
+  return ImGui::GetIO().WantCaptureKeyboard;
+}
+
+}  // namespace migiwa

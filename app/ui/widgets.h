@@ -1,0 +1,20 @@
+// Small pieces that the panels share.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <imgui.h>
+
+namespace migiwa {
+
+/// A label in the left column; the next widget fills the right one.
+void rowLabel(const char* label);
+/// A drop-down list over names; returns whether `index` changed.
+bool choice(const char* id, int& index, std::span<const std::string_view> names);
+/// Text in the panels' fainter colour.
+void faintText(std::string_view text);
+/// `count` buttons side by side: the width of each.
+float buttonWidth(int count);
+
+}  // namespace migiwa

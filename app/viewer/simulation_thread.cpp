@@ -1,0 +1,152 @@
+#include "app/viewer/simulation_thread.h"
+
+#include <exception>
+#include <utility>
+
+namespace migiwa {
+namespace {
+
+std::string describe(const RunStatistics& statistics) {
+  std::string text;
+  for (const Trouble& trouble : statistics.trouble) {
+    text = trouble.kind + " at step " + std::to_string(trouble.step) + ": " + trouble.detail;
+  }
+  return text;
+}
+
+}  // namespace
+
+SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
+    : scene_(scene),
+      threads_(threads),
+      pace_(pace),
+      simulation_(std::make_unique<Simulation>(scene, threads)) {
+  walls_ = simulation_->wireframe();
+  finished_.assign(simulation_->view());
+  hasFrame_ = true;
+  thread_ = std::thread([this] { work(); });
+}
+
+SimulationThread::~SimulationThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void SimulationThread::play() {
+  const std::lock_guard lock(mutex_);
+  status_.playing = !status_.stopped;
+  wake_.notify_one();
+}
+
+void SimulationThread::pause() {
+  const std::lock_guard lock(mutex_);
+  status_.playing = false;
+}
+
+void SimulationThread::step() {
+  const std::lock_guard lock(mutex_);
+  status_.playing = false;
+  ++steps_;
+  wake_.notify_one();
+}
+
+void SimulationThread::reset() {
+  const std::lock_guard lock(mutex_);
+  reset_ = true;
+  steps_ = 0;
+  wake_.notify_one();
+}
+
+void SimulationThread::apply(const Settings& settings) {
+  const std::lock_guard lock(mutex_);
+  settings_ = settings;
+  wake_.notify_one();
+}
+
+bool SimulationThread::takeFrame(FrameSnapshot& frame) {
+  const std::lock_guard lock(mutex_);
+  if (!hasFrame_) return false;
+  std::swap(frame, finished_);
+  hasFrame_ = false;
+  return true;
+}
+
+RunStatus SimulationThread::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+void SimulationThread::work() {
+  std::unique_lock lock(mutex_);
+  while (waitForWork(lock)) {
+    try {
+      carryOutWishes(lock);
+      if (status_.stopped || (!status_.playing && steps_ == 0)) continue;
+      if (steps_ > 0) --steps_;
+      advance(lock);
+    } catch (const std::exception& error) {
+      if (!lock.owns_lock()) lock.lock();
+      status_ = {false, true, error.what()};
+    }
+  }
+}
+
+/// Sleeps until there is something to do and, in real time, until the next frame is due. False when it is
+/// over.
+bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
+  const auto asked = [this] { return quit_ || reset_ || settings_ || (steps_ > 0 && !status_.stopped); };
+  while (!asked()) {
+    if (!status_.playing) {
+      wake_.wait(lock);
+    } else if (pace_ == Pace::unlimited || Clock::now() >= due_) {
+      break;
+    } else {
+      wake_.wait_until(lock, due_);
+    }
+  }
+  return !quit_;
+}
+
+void SimulationThread::carryOutWishes(std::unique_lock<std::mutex>& lock) {
+  const bool reset = std::exchange(reset_, false);
+  const std::optional<Settings> settings = std::exchange(settings_, std::nullopt);
+  if (!reset && !settings) return;
+  lock.unlock();
+  const Settings wanted = settings.value_or(simulation_->settings());
+  if (reset) simulation_ = std::make_unique<Simulation>(scene_, threads_);
+  simulation_->apply(wanted);
+  lock.lock();
+  if (reset) {
+    status_.stopped = false;
+    status_.trouble.clear();
+  }
+  publish(lock);
+}
+
+void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  const auto start = Clock::now();
+  simulation_->advanceFrame();
+  const bool stopped = simulation_->stopped();
+  const std::string trouble = stopped ? describe(simulation_->statistics()) : "";
+  // A late frame is not made up for: time lost would come back as a burst.
+  const auto length = std::chrono::duration<double>(simulation_->settings().solver.timeStep);
+  due_ = (due_ < start - length ? start : due_) + std::chrono::duration_cast<Clock::duration>(length);
+  lock.lock();
+  if (stopped) status_ = {false, true, trouble};
+  publish(lock);
+}
+
+void SimulationThread::publish(std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  filling_.assign(simulation_->view());
+  lock.lock();
+  std::swap(filling_, finished_);
+  hasFrame_ = true;
+}
+
+}  // namespace migiwa

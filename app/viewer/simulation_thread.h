@@ -1,0 +1,75 @@
+// A simulation on a thread of its own, so that an interface stays quick while a step is slow. Wishes are
+// carried out between frames; finished frames are handed over as copies. No window, no OpenGL.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "app/ui/panel_model.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+
+/// How fast frames may follow each other. The physics never sees a clock; this only waits between frames.
+enum class Pace { realTime, unlimited };
+
+class SimulationThread {
+ public:
+  /// Fills the scene on the calling thread; `threads` as for Simulation.
+  SimulationThread(const Scene& scene, int threads, Pace pace);
+  ~SimulationThread();
+  SimulationThread(const SimulationThread&) = delete;
+  SimulationThread& operator=(const SimulationThread&) = delete;
+
+  void play();
+  void pause();
+  /// Pauses, and computes one frame more.
+  void step();
+  /// Back to the start, with the settings of now; goes on playing if it did.
+  void reset();
+  /// Takes effect with the next frame.
+  void apply(const Settings& settings);
+
+  /// Swaps the newest frame into `frame` if there is one that was not taken yet.
+  bool takeFrame(FrameSnapshot& frame);
+  RunStatus status() const;
+  /// Walls for drawing.
+  const std::vector<LineSegment>& walls() const { return walls_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void work();
+  bool waitForWork(std::unique_lock<std::mutex>& lock);
+  void carryOutWishes(std::unique_lock<std::mutex>& lock);
+  void advance(std::unique_lock<std::mutex>& lock);
+  void publish(std::unique_lock<std::mutex>& lock);
+
+  const Scene scene_;
+  const int threads_;
+  const Pace pace_;
+  std::vector<LineSegment> walls_;
+
+  // Of the simulation's thread alone, once it runs.
+  std::unique_ptr<Simulation> simulation_;
+  FrameSnapshot filling_;
+  Clock::time_point due_{};
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  FrameSnapshot finished_;
+  bool hasFrame_ = false;
+  RunStatus status_;
+  bool reset_ = false, quit_ = false;
+  int steps_ = 0;
+  std::optional<Settings> settings_;
+
+  std::thread thread_;
+};
+
+}  // namespace migiwa

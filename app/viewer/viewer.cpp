@@ -1,0 +1,170 @@
+#include "app/viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "app/ui/number_text.h"
+#include "app/viewer/camera_control.h"
+#include "app/viewer/reference_speed.h"
+
+namespace migiwa {
+namespace {
+
+constexpr double kDoubleClickSeconds = 0.3;
+
+Surroundings surroundings(const Scene& scene, std::vector<LineSegment> walls) {
+  Surroundings result{scene.bounds(), scene.view.camera.up, std::move(walls)};
+  if (scene.gravity.norm() > 0) result.up = -scene.gravity;
+  return result;
+}
+
+bool contains(const Rect& area, const InputState& input) {
+  const int x = static_cast<int>(input.mouseX) - area.x, y = static_cast<int>(input.mouseY) - area.y;
+  return input.mouseInside && x >= 0 && y >= 0 && x < area.width && y < area.height;
+}
+
+}  // namespace
+
+double scaleFor(int width, int height) {
+  return std::clamp(std::min(width / 1280.0, height / 720.0), 0.8, 4.0);
+}
+
+Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerOptions& options)
+    : scene_(scene),
+      options_(options),
+      bounds_(scene.bounds()),
+      referenceSpeed_(referenceSpeed(scene)),
+      settings_{scene.solver, scene.boundary},
+      view_{scene.view.camera, scene.view.clip, scene.view.color, true, options.panels},
+      renderer_(surroundings(scene, std::move(walls)), options.colors),
+      ui_(options.scale) {}
+
+Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
+                     int height) {
+  if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
+  const Rect area = ui_.sceneArea(width, height, view_.panels);
+
+  // The first frame's panels know their own size only once they have been laid out.
+  if (!laidOut_) {
+    for (int i = 0; i < 2; ++i) {
+      ui_.begin(width, height, InputState{});
+      drawUi(frame, run, area);
+      ui_.end(false);
+    }
+    laidOut_ = true;
+  }
+
+  ui_.begin(width, height, input);
+  Wishes wishes = drawUi(frame, run, area);
+  if (!ui_.wantsKeyboard()) keys(input, run, wishes);
+  moveCamera(input, area);
+  last_ = input;
+
+  target_->beginScene();
+  const Shot shot{view_.camera, view_.clip, view_.color, colorRange(view_.color), view_.walls, area};
+  renderer_.draw(frame, shot, *target_);
+  target_->beginOverlay();
+  ui_.end(true);
+  return wishes;
+}
+
+Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width, int height) {
+  laidOut_ = false;
+  frame(view, run, InputState{}, width, height);
+  return picture();
+}
+
+Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {
+  Wishes wishes;
+  ui_.caption(caption(frame), area);
+  ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
+  if (view_.panels) {
+    PanelModel model{frame.info, run, options_.timings, scene_, bounds_, settings_, view_, wishes};
+    ui_.panels(model, area.height);
+  }
+  return wishes;
+}
+
+Caption Viewer::caption(const FrameView& frame) const {
+  const FrameInfo& info = frame.info;
+  Caption caption{scene_.name.empty() ? scene_.stem() : scene_.name,
+                  {{"time", formatNumber("%.3f s", info.time)},
+                   {"particles", groupedDigits(frame.positions.size())},
+                   {"walls", info.handling},
+                   {"iterations", std::to_string(info.iterations)},
+                   {"ms per step", milliseconds(info.stepSeconds, options_.timings)},
+                   {"grid", formatNumber("%g m", renderer_.ground().gridSpacing)}}};
+  const std::size_t equals = options_.note.find(" = ");
+  if (equals != std::string::npos) {
+    caption.rows.emplace_back(options_.note.substr(0, equals), options_.note.substr(equals + 3));
+  }
+  return caption;
+}
+
+std::array<double, 2> Viewer::colorRange(ColorField field) const {
+  if (scene_.view.hasColorRange && field == scene_.view.color) return scene_.view.colorRange;
+  const ColorFieldInfo info = colorInfo(field);
+  return {info.low, info.high};
+}
+
+void Viewer::moveCamera(const InputState& input, const Rect& area) {
+  const bool left = input.down(MouseButton::left);
+  const bool other = input.down(MouseButton::right) || input.down(MouseButton::middle);
+  const bool pressed = left && !last_.down(MouseButton::left);
+  const bool free = contains(area, input) && !ui_.wantsMouse();
+  if (!left && !other) draggingScene_ = false;
+  const bool dragged = draggingScene_;
+  if ((left || other) && !draggingScene_ && free) draggingScene_ = true;
+
+  sinceClick_ += input.seconds;
+  if (pressed && free) {
+    if (sinceClick_ < kDoubleClickSeconds) {
+      const auto point = pointAt(static_cast<int>(input.mouseX), static_cast<int>(input.mouseY), area);
+      if (point) lookAt(view_.camera, *point);
+    }
+    sinceClick_ = 0;
+  }
+
+  const double dx = static_cast<double>(input.mouseX - last_.mouseX) / area.height;
+  const double dy = static_cast<double>(input.mouseY - last_.mouseY) / area.height;
+  if (dragged && left && !input.shift) orbit(view_.camera, std::numbers::pi * dx, std::numbers::pi * dy);
+  if (dragged && (other || input.shift)) {
+    // What lies at the target's distance follows the mouse.
+    const double height = 2 * (view_.camera.eye - view_.camera.target).norm() *
+                          std::tan(view_.camera.fovDegrees * std::numbers::pi / 360);
+    pan(view_.camera, dx * height, -dy * height);
+  }
+  if (free && input.wheel != 0) zoom(view_.camera, std::pow(0.9, static_cast<double>(input.wheel)));
+}
+
+void Viewer::keys(const InputState& input, const RunStatus& run, Wishes& wishes) {
+  const auto pressed = [&](Key key) { return input.down(key) && !last_.down(key); };
+  if (input.control || input.alt) return;
+  if (pressed(Key::space)) (run.playing ? wishes.pause : wishes.play) = true;
+  if (pressed(Key::right)) wishes.step = true;
+  if (pressed(Key::r)) wishes.reset = true;
+  if (pressed(Key::p)) wishes.savePicture = true;
+  if (pressed(Key::h)) view_.panels = !view_.panels;
+  if (pressed(Key::c)) {
+    BoundaryHandling& handling = settings_.boundary.handling;
+    handling = handling == BoundaryHandling::gamma ? BoundaryHandling::none : BoundaryHandling::gamma;
+    wishes.settings = true;
+  }
+}
+
+std::optional<Vec3d> Viewer::pointAt(int x, int y, const Rect& area) const {
+  const std::optional<float> depth = target_->depthAt(x, y);
+  if (!depth) return std::nullopt;
+  const Projection projection = makeProjection(view_.camera, target_->width(), target_->height(), area);
+  const Eigen::Vector4d onScreen(2 * (x + 0.5 - area.x) / area.width - 1,
+                                 1 - 2 * (y + 0.5 - area.y) / area.height,
+                                 2 * static_cast<double>(*depth) - 1, 1);
+  const Eigen::Matrix4d toScreen = (projection.clip * projection.view).cast<double>();
+  const Eigen::Vector4d world = toScreen.inverse() * onScreen;
+  return Vec3d(world.head<3>() / world.w());
+}
+
+}  // namespace migiwa

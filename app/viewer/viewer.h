@@ -1,0 +1,67 @@
+// One frame of the program: scene, text and panels, in a window and off-screen alike. Who calls it owns the
+// context, which must stay current, and decides when to stop.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/platform/input_state.h"
+#include "app/render/image.h"
+#include "app/render/renderer.h"
+#include "app/ui/ui.h"
+
+namespace migiwa {
+
+struct ViewerOptions {
+  double scale = 1;     ///< size of text and panels; 1 suits a picture 720 pixels high
+  bool panels = true;   ///< draw the panels
+  bool timings = true;  ///< show wall times, which differ from run to run
+  std::string note{};   ///< an extra line for the caption, "label = value"
+  ColorMap colors = makeColorMap();
+};
+
+/// The scale that suits a picture of this size.
+double scaleFor(int width, int height);
+
+class Viewer {
+ public:
+  Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerOptions& options);
+
+  /// Draws one frame and returns what the user asked for.
+  Wishes frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width, int height);
+  /// The picture of the last frame.
+  Image picture() const { return target_->read(); }
+  /// Draws a frame that nobody sees or touches; it depends on no earlier one.
+  Image takePicture(const FrameView& frame, const RunStatus& run, int width, int height);
+  void copyToWindow() const { target_->copyToWindow(target_->width(), target_->height()); }
+
+  const Settings& settings() const { return settings_; }
+  ViewState& view() { return view_; }
+  ColorFieldInfo colorInfo(ColorField field) const { return colorFieldInfo(field, referenceSpeed_); }
+  /// Ends of the colour map for a field, in its unit.
+  std::array<double, 2> colorRange(ColorField field) const;
+
+ private:
+  Wishes drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
+  void moveCamera(const InputState& input, const Rect& area);
+  void keys(const InputState& input, const RunStatus& run, Wishes& wishes);
+  std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
+  Caption caption(const FrameView& frame) const;
+
+  Scene scene_;
+  ViewerOptions options_;
+  Bounds bounds_;
+  double referenceSpeed_;
+  Settings settings_;
+  ViewState view_;
+  Renderer renderer_;
+  Ui ui_;
+  std::optional<RenderTarget> target_;
+  InputState last_;
+  bool laidOut_ = false;
+  bool draggingScene_ = false;
+  double sinceClick_ = 0;
+};
+
+}  // namespace migiwa

@@ -1,0 +1,66 @@
+#include "app/viewer/window_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+
+#include "app/platform/glfw_window.h"
+#include "app/viewer/simulation_thread.h"
+#include "app/viewer/viewer.h"
+
+namespace migiwa {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720;
+/// No screen shows more; without a screen's own limit the simulation would lose its processor to drawing.
+constexpr double kShortestFrame = 1.0 / 60;
+/// Panels answer to an input over a few frames.
+constexpr int kFramesAfterInput = 3;
+
+void carryOut(const Wishes& wishes, const Settings& settings, SimulationThread& simulation) {
+  if (wishes.settings) simulation.apply(settings);
+  if (wishes.reset) simulation.reset();
+  if (wishes.play) simulation.play();
+  if (wishes.pause) simulation.pause();
+  if (wishes.step) simulation.step();
+}
+
+}  // namespace
+
+void runWindow(const Scene& scene, const WindowOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const std::string name = scene.name.empty() ? scene.stem() : scene.name;
+  GlfwWindow window(name + " - Migiwa", kWidth, kHeight);
+  SimulationThread simulation(scene, options.threads, Pace::realTime);
+  Viewer viewer(scene, simulation.walls(), {.scale = window.contentScale()});
+  if (options.playing) simulation.play();
+
+  FrameSnapshot frame;
+  std::future<void> saving;
+  int redraws = kFramesAfterInput;
+  long drawn = 0;
+  Clock::time_point last = Clock::now();
+  while (!window.shouldClose() && (!options.frames || drawn < *options.frames)) {
+    const double since = std::chrono::duration<double>(Clock::now() - last).count();
+    const InputState input = window.waitForInput(std::max(kShortestFrame - since, 0.0));
+    if (window.somethingHappened()) redraws = kFramesAfterInput;
+    if (simulation.takeFrame(frame)) redraws = std::max(redraws, 1);
+    const auto [width, height] = window.framebufferSize();
+    last = Clock::now();
+    if ((redraws == 0 && !options.frames) || width == 0 || height == 0) continue;
+
+    const Wishes wishes = viewer.frame(frame.view(), simulation.status(), input, width, height);
+    viewer.copyToWindow();
+    window.swap();
+    carryOut(wishes, viewer.settings(), simulation);
+    if (wishes.savePicture && options.savePicture) {
+      if (saving.valid()) saving.get();
+      saving = std::async(std::launch::async, options.savePicture, viewer.picture());
+    }
+    redraws = std::max(redraws - 1, 0);
+    ++drawn;
+  }
+  if (saving.valid()) saving.get();
+}
+
+}  // namespace migiwa

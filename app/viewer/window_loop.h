@@ -1,0 +1,23 @@
+// The window's loop: input in, wishes to the simulation's thread, one frame out.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "app/render/image.h"
+#include "core/scene/scene.h"
+
+namespace migiwa {
+
+struct WindowOptions {
+  int threads = 0;
+  bool playing = true;         ///< start at once
+  std::optional<long> frames;  ///< close after so many drawn frames
+  /// Keeps a picture that the user asked for; called on a thread of its own.
+  std::function<void(const Image&)> savePicture;
+};
+
+/// Opens a window on the scene and returns when it is closed. Throws MissingError where there is no display.
+void runWindow(const Scene& scene, const WindowOptions& options);
+
+}  // namespace migiwa

@@ -1,0 +1,39 @@
+# migiwa_add_test(NAME SOURCES file... LABELS label... [LINK library...] [TIMEOUT seconds])
+#
+# One GoogleTest program over migiwa_core, every TEST of it known to ctest by its own name. Labels say what a test
+# needs: unit (core only, well under a second), simulation (runs a scene), render (a picture: needs EGL), window (needs
+# a display), threads (worth running under the thread sanitizer). The target tests_LABEL builds all programs with
+# that label.
+include(GoogleTest)
+find_package(GTest REQUIRED)
+
+function(migiwa_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LABELS;LINK")
+  if(NOT arg_SOURCES OR NOT arg_LABELS OR arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "migiwa_add_test(${name}): expected SOURCES and LABELS, found '${ARGN}'")
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE migiwa_core GTest::gtest_main ${arg_LINK})
+  target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  migiwa_target_options(${name})
+
+  # Labels are set by a file of our own that ctest reads after the discovery's: on its way through the discovery a list
+  # of several labels would fall apart.
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_TYPES
+    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT})
+  set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+  file(WRITE ${labels_file}
+    "foreach(test IN LISTS ${name}_list)\n  set_tests_properties(\${test} PROPERTIES LABELS \"${arg_LABELS}\")\nendforeach()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
+
+  foreach(label IN LISTS arg_LABELS)
+    if(NOT TARGET tests_${label})
+      add_custom_target(tests_${label})
+    endif()
+    add_dependencies(tests_${label} ${name})
+  endforeach()
+endfunction()

@@ -1,0 +1,11 @@
+# Writes OUTPUT, a C++ source that holds every file of SHADERS as a string (app/render/shader_source.h).
+set(text "// Generated from shaders/ by cmake/embed_shaders.cmake.\n#include \"app/render/shader_source.h\"\n\n")
+string(APPEND text "namespace migiwa {\n\nstd::span<const EmbeddedShader> embeddedShaders() {\n")
+string(APPEND text "  static constexpr EmbeddedShader kShaders[] = {\n")
+foreach(shader IN LISTS SHADERS)
+  get_filename_component(name "${shader}" NAME)
+  file(READ "${shader}" source)
+  string(APPEND text "      {\"${name}\", R\"shader(${source})shader\"},\n")
+endforeach()
+string(APPEND text "  };\n  return kShaders;\n}\n\n}  // namespace migiwa\n")
+file(WRITE "${OUTPUT}" "${text}")

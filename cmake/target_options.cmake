@@ -1,0 +1,18 @@
+# What every target of ours is compiled with. Debian's libraries are not held to our warnings.
+function(migiwa_target_options target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
+    -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror)
+  # GCC 12 sees overlapping copies in every std::string concatenation (its bug 105651).
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
+  # No contraction and no fast-math: the state hash must not depend on what the compiler fuses.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
+  if(MIGIWA_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${MIGIWA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${MIGIWA_SANITIZE})
+    # GCC sees null dereferences and uninitialised values in code that the sanitizers insert.
+    target_compile_options(${target} PRIVATE -Wno-null-dereference -Wno-maybe-uninitialized)
+  endif()
+endfunction()

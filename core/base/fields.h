@@ -1,0 +1,95 @@
+// How a struct tells the outside world which JSON keys it has. The struct visits its fields once; reading a
+// scene, writing it with all defaults, and later its schema and its documentation are visitors of that one
+// list. Nothing here knows JSON: the readers live in core/scene.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace migiwa {
+
+/// Interval of allowed values. An open end excludes the bound itself.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool openMin = false;
+  bool openMax = false;
+
+  static Range closed(double a, double b) { return {a, b, false, false}; }
+  static Range halfOpen(double a, double b) { return {a, b, false, true}; }
+  static Range positive(double most) { return {0, most, true, false}; }
+  bool contains(double v) const { return (openMin ? v > min : v >= min) && (openMax ? v < max : v <= max); }
+  std::string text() const;
+};
+
+/// Coordinates, speeds and accelerations beyond this are refused: float keeps no digit that means anything
+/// there.
+inline constexpr double kLargestCoordinate = 1e7;
+inline constexpr Range kCoordinateRange{-kLargestCoordinate, kLargestCoordinate};
+
+enum class Presence { optional, required };
+
+struct FieldDoc {
+  std::string_view unit;         ///< SI unit, "1" for a ratio, empty for text
+  std::string_view description;  ///< one sentence
+  Presence presence = Presence::optional;
+};
+
+/// Visits one JSON object's fields in order. A reader overwrites the values, a writer only looks at them.
+class FieldVisitor {
+ public:
+  using Fields = std::function<void(FieldVisitor&)>;
+
+  virtual ~FieldVisitor() = default;
+  virtual void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) = 0;
+  virtual void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) = 0;
+  virtual void boolean(std::string_view key, bool& value, const FieldDoc& doc) = 0;
+  virtual void text(std::string_view key, std::string& value, const FieldDoc& doc) = 0;
+  virtual void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) = 0;
+  /// Two numbers, such as the ends of a colour range. `present`, if given, says whether the key is there.
+  virtual void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
+                    bool* present = nullptr) = 0;
+  /// One of `names`; `index` is its place in the list.
+  virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+                      const FieldDoc& doc) = 0;
+  /// A nested object. `present`, if given, says whether the key is there; an absent object's fields are not
+  /// visited.
+  virtual void object(std::string_view key, const FieldDoc& doc, const Fields& fields,
+                      bool* present = nullptr) = 0;
+  /// An array of objects: a reader calls `element` for each entry it finds, a writer `size` times.
+  virtual void list(std::string_view key, std::size_t size, const FieldDoc& doc,
+                    const std::function<void(FieldVisitor&, std::size_t)>& element) = 0;
+  /// The key that decides which further fields the object has (such as "shape"). `index` < 0 when it is not
+  /// known yet or wrong; `fields` is called with a valid index only.
+  virtual void variant(std::string_view key, int& index, std::span<const std::string_view> names,
+                       const FieldDoc& doc, const std::function<void(FieldVisitor&, int)>& fields) = 0;
+  /// Reports what only the struct itself can see, such as min beyond max, at the key or, for an empty key, at
+  /// the object itself. Left out where the key is faulty already. Ignored by writers.
+  virtual void fault(std::string_view key, std::string_view message) = 0;
+  /// Whether these keys hold what was written: false after a fault in one of them. A check across several
+  /// keys asks first, so that it never complains about a default that took the place of a faulty value.
+  virtual bool sound(std::initializer_list<std::string_view> keys) const {
+    static_cast<void>(keys);
+    return true;
+  }
+
+  /// A choice held as an enum whose values count from 0 in the order of `names`.
+  template <class Enum>
+  void choice(std::string_view key, Enum& value, std::span<const std::string_view> names,
+              const FieldDoc& doc) {
+    int index = static_cast<int>(value);
+    choice(key, index, names, doc);
+    value = static_cast<Enum>(index);
+  }
+};
+
+}  // namespace migiwa

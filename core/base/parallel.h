@@ -1,0 +1,71 @@
+// Parallel loops over fixed chunks. The chunks do not depend on the number of threads and every chunk is worked on
+// by one thread, so a result put together from per-chunk results in chunk order is the same for any number of threads.
+// Waiting threads sleep: on a busy machine a spinning pool loses a scheduler slice in every region. Written with
+// standard primitives only, so that the thread sanitizer sees all of it.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace migiwa {
+
+class ThreadPool {
+ public:
+  /// `threads` in [1, 256], the caller of run() included; 0 takes what the machine has.
+  explicit ThreadPool(int threads = 0);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// Calls task(chunk) once for every chunk in [0, chunks) and returns when all are done.
+  /// The first exception of a task is thrown again here. Not re-entrant.
+  void run(std::size_t chunks, const std::function<void(std::size_t)>& task);
+
+ private:
+  void work();
+  void takeChunks(std::unique_lock<std::mutex>& lock);
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable done_;
+  const std::function<void(std::size_t)>* task_ = nullptr;
+  std::size_t next_ = 0;
+  std::size_t chunks_ = 0;
+  std::size_t pending_ = 0;
+  std::exception_ptr failure_;
+  bool stop_ = false;
+};
+
+/// Particles a chunk: small enough to balance, large enough that taking one costs nothing.
+inline constexpr std::size_t kChunk = 512;
+
+inline std::size_t chunkCount(std::size_t n) { return (n + kChunk - 1) / kChunk; }
+
+/// Calls body(begin, end, chunk) for every chunk of [0, n).
+template <class Body>
+void parallelFor(ThreadPool& pool, std::size_t n, const Body& body) {
+  pool.run(chunkCount(n), [&](std::size_t chunk) {
+    const std::size_t begin = chunk * kChunk;
+    body(begin, begin + kChunk < n ? begin + kChunk : n, chunk);
+  });
+}
+
+/// Folds per-chunk results in chunk order: value = body(begin, end), total = fold(total, value).
+template <class T, class Body, class Fold>
+T parallelReduce(ThreadPool& pool, std::size_t n, T initial, const Body& body, const Fold& fold) {
+  std::vector<T> parts(chunkCount(n), initial);
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) { parts[chunk] = body(begin, end); });
+  T total = initial;
+  for (const T& part : parts) total = fold(total, part);
+  return total;
+}
+
+}  // namespace migiwa

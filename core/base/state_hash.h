@@ -1,0 +1,16 @@
+// A hash of what a simulation's future depends on. It sums over particles, so neither their order nor the number of
+// threads matters; one changed bit changes it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/base/parallel.h"
+#include "core/base/types.h"
+
+namespace migiwa {
+
+std::uint64_t stateHash(std::span<const std::uint32_t> ids, std::span<const Float4> positions,
+                        std::span<const Float4> velocities, ThreadPool& pool);
+
+}  // namespace migiwa

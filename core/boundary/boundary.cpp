@@ -1,0 +1,78 @@
+#include "core/boundary/boundary.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace migiwa {
+
+float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  normal.setZero();
+  for (const auto& surface : surfaces_) {
+    Vec3f n;
+    const float d = surface->distance(p, n);
+    if (d < nearest) {
+      nearest = d;
+      normal = n;
+    }
+  }
+  return nearest;
+}
+
+float Boundary::distance(const Vec3f& p) const {
+  Vec3f normal;
+  return distance(p, normal);
+}
+
+bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
+  // Each surface in turn until none moves the point. Where surfaces leave no room the point swings between them, and
+  // the mean of the last swing lies midway.
+  constexpr int kRounds = 16;
+  const Vec3f start = p;
+  const float rounding = 1e-4F * margin;
+  Vec3f middle = p;
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3f sum = Vec3f::Zero();
+    int moves = 0;
+    float farthest = 0;
+    for (const auto& surface : surfaces_) {
+      const Vec3f before = p;
+      if (!surface->project(p, margin)) continue;
+      farthest = std::max(farthest, (p - before).norm());
+      sum += p;
+      ++moves;
+    }
+    if (farthest <= rounding) {
+      fits = true;
+      return p != start;
+    }
+    middle = sum / static_cast<float>(moves);
+  }
+  fits = false;
+  p = middle;
+  return true;
+}
+
+bool Boundary::project(Vec3f& p, float margin) const {
+  if (surfaces_.empty()) return false;
+  if (surfaces_.size() == 1) return surfaces_.front()->project(p, margin);
+  const Vec3f start = p;
+  bool fits = true;
+  const bool moved = projectInTurn(p, margin, fits);
+  if (fits) return moved;
+
+  // The shortest way out of one wall leads into another: take the shortest of the other ways that end in the fluid.
+  std::vector<Vec3f> ways;
+  for (const auto& surface : surfaces_) surface->otherWaysOut(start, margin, ways);
+  float best = std::numeric_limits<float>::infinity();
+  for (Vec3f& way : ways) {
+    projectInTurn(way, margin, fits);
+    const float length = (way - start).norm();
+    if (!fits || length >= best) continue;
+    best = length;
+    p = way;
+  }
+  return true;
+}
+
+}  // namespace migiwa

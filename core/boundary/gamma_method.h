@@ -1,0 +1,48 @@
+// gamma_i of [FM] Eq. 6: the part of the kernel's support that the solid does not cover, with its gradient, for a
+// batch of points. A method is one file that implements this interface and one line in gamma_registry.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/boundary/boundary.h"
+#include "core/sph/kernel_type.h"
+
+namespace migiwa {
+
+/// gamma at one point. Gradients are those of gamma with respect to the point over the support radius, so without a
+/// unit: multiply by 1/h for 1/m.
+struct GammaSample {
+  float gamma = 1;
+  float distance = 0;                     ///< to the nearest wall (m), positive in the fluid
+  Vec3f gradient = Vec3f::Zero();         ///< h grad gamma for the density kernel
+  Vec3f pairGradient = Vec3f::Zero();     ///< the same for the kernel of the pair gradients: the wall's push
+};
+
+class GammaMethod {
+ public:
+  virtual ~GammaMethod() = default;
+  /// Fills out[i] for points[i] (xyz in m). Thread-safe.
+  virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
+};
+
+struct GammaContext {
+  const Boundary& boundary;
+  KernelType kernel;
+  float supportRadius;  ///< (m)
+};
+
+/// Names for the scene's gamma method, "auto" first.
+std::span<const std::string_view> gammaMethodNames();
+struct PickedGamma {
+  std::unique_ptr<GammaMethod> method;
+  std::string name;    ///< of the method that is used
+  std::string reason;  ///< why "auto" took it; empty when it was asked for by name
+};
+PickedGamma makeGammaMethod(int index, const GammaContext& context);
+
+}  // namespace migiwa

@@ -1,0 +1,73 @@
+// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and one line
+// in surface_registry.cpp. Distances are metres, positive in the fluid; normals are unit vectors into the fluid.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/bounds.h"
+#include "core/base/fields.h"
+#include "core/base/types.h"
+
+namespace migiwa {
+
+/// A planar piece of a wall as seen from one point.
+struct WallPiece {
+  Vec3f normal;         ///< unit, into the fluid
+  float planeDistance;  ///< signed distance of the point to the piece's plane (m)
+  Vec3f foot;           ///< closest point of the piece itself
+};
+
+/// How the pieces of one surface make up its solid.
+enum class PieceRule {
+  fluidInsideAll,  ///< the fluid is the intersection of the pieces' fluid sides: a tank
+  solidInsideAll,  ///< the solid is the intersection of the pieces' solid sides: a block
+};
+
+struct LineSegment {
+  Vec3f from, to;
+};
+
+/// A box tank as the settled measures need it: axes, extents, and whether the fluid is inside.
+struct BoxGeometry {
+  Vec3d center;
+  Eigen::Matrix3d axes;  ///< columns: unit axes
+  Vec3d halfExtents;     ///< metres
+};
+
+class Surface {
+ public:
+  virtual ~Surface() = default;
+
+  /// Visits the fields of the scene file's object, then checks and prepares what follows from them.
+  virtual void describe(FieldVisitor& visitor) = 0;
+
+  /// Signed distance of p, and the unit normal at the nearest point of the wall.
+  virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
+
+  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where two of its
+  /// walls leave no room. Returns whether p moved.
+  virtual bool project(Vec3f& p, float margin) const = 0;
+
+  /// Appends other points at `margin` that p could be moved to, for where other walls bar the shortest way.
+  virtual void otherWaysOut(const Vec3f&, float /*margin*/, std::vector<Vec3f>&) const {}
+
+  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of reach.
+  virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const = 0;
+  virtual PieceRule pieceRule() const = 0;
+
+  /// The finite extent, empty for a surface without one.
+  virtual Bounds bounds() const = 0;
+  /// Lines that show the wall; `scene` bounds what an infinite wall draws.
+  virtual void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const = 0;
+  /// Non-null for a box that holds the fluid.
+  virtual const BoxGeometry* tank() const { return nullptr; }
+};
+
+/// Names for the scene's "shape" key, in the order of makeSurface's index.
+std::span<const std::string_view> surfaceShapes();
+std::unique_ptr<Surface> makeSurface(int shape);
+
+}  // namespace migiwa

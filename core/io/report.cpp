@@ -1,0 +1,197 @@
+// The report's JSON, written and read through one list of its keys.
+#include "core/io/report.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/scene/fault_list.h"
+#include "core/scene/json_document.h"
+
+namespace migiwa {
+
+namespace {
+
+/// Calls visit(pointer, member) for every key in the order of the file.
+template <class SomeReport, class Visit>
+void visitReport(SomeReport& report, const Visit& visit) {
+  visit("/scene", report.scene);
+  visit("/overrides", report.overrides);
+  visit("/boundary/handling", report.handling);
+  visit("/boundary/gamma_method", report.gammaMethod);
+  visit("/boundary/gamma_reason", report.gammaReason);
+  visit("/steps", report.steps);
+  visit("/simulated_s", report.simulatedSeconds);
+  visit("/wall_s", report.wallSeconds);
+  visit("/threads", report.threads);
+  visit("/particles", report.particles);
+  visit("/state_hash", report.stateHash);
+  visit("/step_ms/median", report.stepMedian);
+  visit("/step_ms/p95", report.stepP95);
+  visit("/stages_ms", report.stages);
+  visit("/ns_per_particle_iteration", report.nanosecondsPerParticleIteration);
+  visit("/iterations/mean", report.iterationsMean);
+  visit("/iterations/max", report.iterationsMax);
+  visit("/density_error/mean", report.densityErrorMean);
+  visit("/density_error/max", report.densityErrorMax);
+  visit("/lost_particles", report.lostParticles);
+  visit("/nonfinite_particles", report.nonfiniteParticles);
+  visit("/max_penetration", report.maxPenetration);
+  visit("/max_speed", report.maxSpeed);
+  visit("/peak_memory_bytes", report.peakMemoryBytes);
+  visit("/trouble", report.trouble);
+  visit("/settled/height", report.settled.height);
+  visit("/settled/expected_height", report.settled.expectedHeight);
+  visit("/settled/near_wall_spacing_p1", report.settled.nearWallSpacingP1);
+  visit("/settled/bulk_spacing_p1", report.settled.bulkSpacingP1);
+  visit("/settled/edge_crowding", report.settled.edgeCrowding);
+  visit("/settled/rms_speed", report.settled.rmsSpeed);
+}
+
+/// Whole numbers without a fraction, so that counts look like counts.
+Json toJson(const Measure& value) {
+  if (!value || !std::isfinite(*value)) return nullptr;
+  if (std::abs(*value) < 9e15 && std::trunc(*value) == *value) return static_cast<std::int64_t>(*value);
+  return *value;
+}
+
+Json toJson(const std::string& value) {
+  return value;
+}
+
+Json toJson(const std::vector<std::string>& value) {
+  return value;
+}
+
+Json toJson(const std::vector<StageTime>& stages) {
+  Json object = Json::object();
+  for (const StageTime& stage : stages) object[stage.name] = toJson(1e3 * stage.seconds);
+  return object;
+}
+
+Json toJson(const std::vector<Trouble>& trouble) {
+  Json array = Json::array();
+  for (const Trouble& item : trouble)
+    array.push_back(
+        {{"kind", item.kind}, {"step", item.step}, {"count", item.count}, {"detail", item.detail}});
+  return array;
+}
+
+/// Reads one member; a fault where the file has something else there.
+class MemberReader {
+ public:
+  MemberReader(const Json& root, FaultList& faults) : root_(root), faults_(faults) {}
+
+  void operator()(const char* pointer, Measure& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (found->is_number()) {
+      value = found->get<double>();
+    } else {
+      wrong(pointer, "a number or null", *found);
+    }
+  }
+  void operator()(const char* pointer, std::string& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (found->is_string()) {
+      value = found->get<std::string>();
+    } else {
+      wrong(pointer, "a text", *found);
+    }
+  }
+  void operator()(const char* pointer, std::vector<std::string>& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (!found->is_array()) return wrong(pointer, "an array of texts", *found);
+    for (const Json& entry : *found) {
+      if (entry.is_string()) {
+        value.push_back(entry.get<std::string>());
+      } else {
+        wrong(pointer, "an array of texts", entry);
+      }
+    }
+  }
+  void operator()(const char* pointer, std::vector<StageTime>& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (!found->is_object()) return wrong(pointer, "an object", *found);
+    for (const auto& item : found->items()) {
+      if (item.value().is_number()) {
+        value.push_back({item.key(), 1e-3 * item.value().get<double>()});
+      } else if (!item.value().is_null()) {
+        wrong(childPointer(pointer, item.key()), "a number or null", item.value());
+      }
+    }
+  }
+  void operator()(const char* pointer, std::vector<Trouble>& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (!found->is_array()) return wrong(pointer, "an array of objects", *found);
+    for (std::size_t k = 0; k < found->size(); ++k) {
+      const Json& entry = (*found)[k];
+      Trouble item;
+      if (take(entry, "kind", item.kind) && take(entry, "step", item.step) &&
+          take(entry, "count", item.count) && take(entry, "detail", item.detail)) {
+        value.push_back(std::move(item));
+      } else {
+        wrong(childPointer(pointer, k), "an object with kind, step, count and detail", entry);
+      }
+    }
+  }
+
+ private:
+  /// Null where the key is missing or null itself.
+  const Json* find(const char* pointer) const {
+    const Json::json_pointer place(pointer);
+    if (!root_.contains(place)) return nullptr;
+    const Json& found = root_.at(place);
+    return found.is_null() ? nullptr : &found;
+  }
+  static bool take(const Json& object, const char* key, std::string& value) {
+    if (!object.is_object() || !object.contains(key) || !object[key].is_string()) return false;
+    value = object[key].get<std::string>();
+    return true;
+  }
+  static bool take(const Json& object, const char* key, long& value) {
+    if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) return false;
+    value = object[key].get<long>();
+    return true;
+  }
+  void wrong(std::string_view pointer, const std::string& expected, const Json& found) const {
+    faults_.add(pointer, "expected " + expected + ", found " + describeJson(found));
+  }
+
+  const Json& root_;
+  FaultList& faults_;
+};
+
+}  // namespace
+
+std::string reportText(const Report& report) {
+  Json root = Json::object();
+  visitReport(report, [&](const char* pointer, const auto& value) {
+    root[Json::json_pointer(pointer)] = toJson(value);
+  });
+  return prettyJson(root);
+}
+
+Report readReport(const std::filesystem::path& file) {
+  const JsonDocument document = parseJson(readTextFile(file, "a report"));
+  if (document.broken)
+    throw InputError(file.string() + ":" + document.faults.front().pointer, document.faults.front().message);
+  FaultList faults(file.string(), {});
+  for (const DocumentFault& fault : document.faults) faults.add(fault.pointer, fault.message);
+
+  Report report;
+  if (document.root.is_object() && document.root.contains("steps") && document.root.contains("particles")) {
+    const MemberReader read(document.root, faults);
+    visitReport(report, [&](const char* pointer, auto& member) { read(pointer, member); });
+  } else {
+    faults.add("", "expected a report, which has the keys steps and particles, found " +
+                       describeJson(document.root) + " without them");
+  }
+  if (!faults.empty()) throw InputError(faults.faults());
+  return report;
+}
+
+}  // namespace migiwa

@@ -1,0 +1,13 @@
+// The particle quantities that pictures can be coloured by.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace migiwa {
+
+enum class ColorField { density, speed, gamma, lambda, neighbours };
+inline constexpr std::array<std::string_view, 5> kColorFieldNames{"density", "speed", "gamma", "lambda",
+                                                                  "neighbours"};
+
+}  // namespace migiwa

@@ -1,0 +1,230 @@
+#include "core/scene/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/nearest_name.h"
+
+namespace migiwa {
+
+namespace {
+
+std::string withUnit(std::string text, const FieldDoc& doc) {
+  if (!doc.unit.empty() && doc.unit != "1") text += " (unit: " + std::string(doc.unit) + ")";
+  return text;
+}
+
+std::string expectedNumber(std::string_view kind, const Range& range, const FieldDoc& doc) {
+  if (range.min == range.max) return range.text();
+  return withUnit(std::string(kind) + " " + range.text(), doc);
+}
+
+/// The known name that was probably meant, as a question to append; `otherwise` if none is near.
+std::string didYouMean(std::string_view word, std::span<const std::string_view> names,
+                       const std::string& otherwise) {
+  std::string_view nearest = nearestName(word, names);
+  const auto letters = static_cast<int>(std::max(word.size(), nearest.size()));
+  if (nearest.empty() || 2 * editDistance(word, nearest) > letters) {
+    // Far, unless it is the beginning of a longer name.
+    const auto longer = std::find_if(names.begin(), names.end(),
+                                     [&](std::string_view name) { return name.starts_with(word); });
+    if (word.size() < 2 || longer == names.end()) return otherwise;
+    nearest = *longer;
+  }
+  return "; did you mean \"" + std::string(nearest) + "\"?";
+}
+
+}  // namespace
+
+JsonReader::JsonReader(const Json& object, const std::string& pointer, FaultList& faults)
+    : object_(object), pointer_(pointer), faults_(faults) {}
+
+void JsonReader::read(const Json& object, const std::string& pointer, FaultList& faults,
+                      const Fields& fields) {
+  JsonReader reader(object, pointer, faults);
+  fields(reader);
+  reader.reportUnknownKeys();
+}
+
+const Json* JsonReader::find(std::string_view key, const FieldDoc& doc, const std::string& expected) {
+  known_.push_back(key);
+  const auto found = object_.find(std::string(key));
+  if (found != object_.end()) return &*found;
+  if (doc.presence == Presence::required) {
+    wrong(key, expected, "nothing; the key is required");
+  }
+  return nullptr;
+}
+
+void JsonReader::wrong(std::string_view key, const std::string& expected, const std::string& found) {
+  faults_.add(childPointer(pointer_, key), "expected " + expected + ", found " + found);
+  faulty_.emplace(key);
+}
+
+void JsonReader::number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) {
+  const std::string expected = expectedNumber("a number", range, doc);
+  const Json* const found = find(key, doc, expected);
+  if (found == nullptr) return;
+  const double read = found->is_number() ? found->get<double>() : 0;
+  if (found->is_number() && std::isfinite(read) && range.contains(read)) {
+    value = read;
+  } else {
+    wrong(key, expected, describeJson(*found));
+  }
+}
+
+void JsonReader::integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) {
+  const std::string expected = expectedNumber("a whole number", range, doc);
+  const Json* const found = find(key, doc, expected);
+  if (found == nullptr) return;
+  const double read = found->is_number() ? found->get<double>() : 0;
+  const bool fits = std::abs(read) <= std::numeric_limits<int>::max() && std::floor(read) == read;
+  if (found->is_number() && fits && range.contains(read)) {
+    value = static_cast<int>(read);
+  } else {
+    wrong(key, expected, describeJson(*found));
+  }
+}
+
+void JsonReader::boolean(std::string_view key, bool& value, const FieldDoc& doc) {
+  const Json* const found = find(key, doc, "true or false");
+  if (found == nullptr) return;
+  if (found->is_boolean()) {
+    value = found->get<bool>();
+  } else {
+    wrong(key, "true or false", describeJson(*found));
+  }
+}
+
+void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& doc) {
+  const Json* const found = find(key, doc, "a text");
+  if (found == nullptr) return;
+  if (found->is_string()) {
+    value = found->get<std::string>();
+  } else {
+    wrong(key, "a text", describeJson(*found));
+  }
+}
+
+bool JsonReader::numbers(std::string_view key, const FieldDoc& doc, std::size_t size, double* values) {
+  const std::string expected = withUnit("an array of " + std::to_string(size) + " numbers", doc);
+  const Json* const found = find(key, doc, expected);
+  if (found == nullptr) return false;
+  if (!found->is_array() || found->size() != size) {
+    wrong(key, expected, describeJson(*found));
+    return false;
+  }
+  std::vector<double> read(size);
+  const std::size_t before = faults_.size();
+  for (std::size_t k = 0; k < size; ++k) {
+    const Json& entry = (*found)[k];
+    if (entry.is_number()) read[k] = entry.get<double>();
+    if (entry.is_number() && kCoordinateRange.contains(read[k])) continue;
+    faults_.add(
+        childPointer(childPointer(pointer_, key), k),
+        "expected " + expectedNumber("a number", kCoordinateRange, doc) + ", found " + describeJson(entry));
+  }
+  if (faults_.size() > before) {
+    faulty_.emplace(key);
+    return false;
+  }
+  std::copy(read.begin(), read.end(), values);
+  return true;
+}
+
+void JsonReader::vector(std::string_view key, Vec3d& value, const FieldDoc& doc) {
+  numbers(key, doc, 3, value.data());
+}
+
+void JsonReader::pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
+                      bool* present) {
+  const bool read = numbers(key, doc, 2, value.data());
+  if (present != nullptr) *present = read;
+}
+
+void JsonReader::choice(std::string_view key, int& index, std::span<const std::string_view> names,
+                        const FieldDoc& doc) {
+  const std::string expected = (names.size() == 1   ? ""
+                                : names.size() == 2 ? "either of "
+                                                    : "one of ") +
+                               quotedList(names);
+  const Json* const found = find(key, doc, expected);
+  if (found == nullptr) return;
+  const auto name = found->is_string()
+                        ? std::find(names.begin(), names.end(), found->get_ref<const std::string&>())
+                        : names.end();
+  if (name != names.end()) {
+    index = static_cast<int>(name - names.begin());
+    return;
+  }
+  const std::string hint =
+      found->is_string() ? didYouMean(found->get_ref<const std::string&>(), names, "") : std::string();
+  wrong(key, expected, describeJson(*found) + hint);
+}
+
+void JsonReader::object(std::string_view key, const FieldDoc& doc, const Fields& fields, bool* present) {
+  const Json* const found = find(key, doc, "an object");
+  if (present != nullptr) *present = found != nullptr;
+  if (found == nullptr) return;
+  if (!found->is_object()) {
+    wrong(key, "an object", describeJson(*found));
+    return;
+  }
+  const std::size_t before = faults_.size();
+  read(*found, childPointer(pointer_, key), faults_, fields);
+  if (faults_.size() > before) faulty_.emplace(key);
+}
+
+void JsonReader::list(std::string_view key, std::size_t, const FieldDoc& doc,
+                      const std::function<void(FieldVisitor&, std::size_t)>& element) {
+  const Json* const found = find(key, doc, "an array of objects");
+  if (found == nullptr) return;
+  if (!found->is_array()) {
+    wrong(key, "an array of objects", describeJson(*found));
+    return;
+  }
+  const std::size_t before = faults_.size();
+  const std::string pointer = childPointer(pointer_, key);
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    const std::string place = childPointer(pointer, k);
+    if ((*found)[k].is_object()) {
+      read((*found)[k], place, faults_, [&](FieldVisitor& fields) { element(fields, k); });
+    } else {
+      faults_.add(place, "expected an object, found " + describeJson((*found)[k]));
+    }
+  }
+  if (faults_.size() > before) faulty_.emplace(key);
+}
+
+void JsonReader::variant(std::string_view key, int& index, std::span<const std::string_view> names,
+                         const FieldDoc& doc, const std::function<void(FieldVisitor&, int)>& fields) {
+  index = -1;
+  choice(key, index, names, doc);
+  if (index >= 0) {
+    fields(*this, index);
+  } else {
+    openEnded_ = true;
+  }
+}
+
+void JsonReader::fault(std::string_view key, std::string_view message) {
+  if (faulty_.contains(key)) return;
+  faults_.add(key.empty() ? pointer_ : childPointer(pointer_, key), std::string(message));
+  if (!key.empty()) faulty_.emplace(key);
+}
+
+bool JsonReader::sound(std::initializer_list<std::string_view> keys) const {
+  return std::none_of(keys.begin(), keys.end(), [&](std::string_view key) { return faulty_.contains(key); });
+}
+
+void JsonReader::reportUnknownKeys() {
+  if (openEnded_) return;
+  for (const auto& item : object_.items()) {
+    if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+    faults_.add(childPointer(pointer_, item.key()),
+                "expected a known key, found " + quotedText(item.key()) +
+                    didYouMean(item.key(), known_, "; known here: " + quotedList(known_)));
+  }
+}
+
+}  // namespace migiwa

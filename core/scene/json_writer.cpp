@@ -1,0 +1,64 @@
+#include "core/scene/json_writer.h"
+
+namespace migiwa {
+
+Json JsonWriter::write(const Fields& fields) {
+  JsonWriter writer;
+  fields(writer);
+  return std::move(writer.object_);
+}
+
+void JsonWriter::put(std::string_view key, Json value) {
+  object_[std::string(key)] = std::move(value);
+}
+
+void JsonWriter::number(std::string_view key, double& value, const Range&, const FieldDoc&) {
+  put(key, value);
+}
+
+void JsonWriter::integer(std::string_view key, int& value, const Range&, const FieldDoc&) {
+  put(key, value);
+}
+
+void JsonWriter::boolean(std::string_view key, bool& value, const FieldDoc&) {
+  put(key, value);
+}
+
+void JsonWriter::text(std::string_view key, std::string& value, const FieldDoc&) {
+  if (!value.empty()) put(key, value);
+}
+
+void JsonWriter::vector(std::string_view key, Vec3d& value, const FieldDoc&) {
+  put(key, Json::array({value.x(), value.y(), value.z()}));
+}
+
+void JsonWriter::pair(std::string_view key, std::array<double, 2>& value, const FieldDoc&, bool* present) {
+  if (present == nullptr || *present) put(key, value);
+}
+
+void JsonWriter::choice(std::string_view key, int& index, std::span<const std::string_view> names,
+                        const FieldDoc&) {
+  put(key, std::string(names[static_cast<std::size_t>(index)]));
+}
+
+void JsonWriter::object(std::string_view key, const FieldDoc&, const Fields& fields, bool* present) {
+  if (present == nullptr || *present) put(key, write(fields));
+}
+
+void JsonWriter::list(std::string_view key, std::size_t size, const FieldDoc&,
+                      const std::function<void(FieldVisitor&, std::size_t)>& element) {
+  Json entries = Json::array();
+  for (std::size_t k = 0; k < size; ++k)
+    entries.push_back(write([&](FieldVisitor& fields) { element(fields, k); }));
+  put(key, std::move(entries));
+}
+
+void JsonWriter::variant(std::string_view key, int& index, std::span<const std::string_view> names,
+                         const FieldDoc& doc, const std::function<void(FieldVisitor&, int)>& fields) {
+  choice(key, index, names, doc);
+  fields(*this, index);
+}
+
+void JsonWriter::fault(std::string_view, std::string_view) {}
+
+}  // namespace migiwa

@@ -1,0 +1,35 @@
+// Writes what structs visit into a JSON object: every key, with the value in force. An empty text is left
+// out, it says nothing.
+#pragma once
+
+#include "core/base/fields.h"
+#include "core/scene/json_document.h"
+
+namespace migiwa {
+
+class JsonWriter final : public FieldVisitor {
+ public:
+  static Json write(const Fields& fields);
+
+  void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) override;
+  void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) override;
+  void boolean(std::string_view key, bool& value, const FieldDoc& doc) override;
+  void text(std::string_view key, std::string& value, const FieldDoc& doc) override;
+  void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override;
+  void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc, bool* present) override;
+  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+              const FieldDoc& doc) override;
+  void object(std::string_view key, const FieldDoc& doc, const Fields& fields, bool* present) override;
+  void list(std::string_view key, std::size_t size, const FieldDoc& doc,
+            const std::function<void(FieldVisitor&, std::size_t)>& element) override;
+  void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc& doc,
+               const std::function<void(FieldVisitor&, int)>& fields) override;
+  void fault(std::string_view key, std::string_view message) override;
+
+ private:
+  void put(std::string_view key, Json value);
+
+  Json object_ = Json::object();
+};
+
+}  // namespace migiwa

@@ -1,0 +1,71 @@
+#include "core/scene/scene_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/scene/fault_list.h"
+#include "core/scene/json_reader.h"
+#include "core/scene/overrides.h"
+#include "core/scene/particle_limit.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr std::string_view kSpacing = "/particle_spacing";
+
+/// What takes the whole scene to see: too many particles for this machine, or too far away for a float's
+/// digits.
+void checkWhole(const Scene& scene, FaultList& faults) {
+  if (faults.anyBelow("/fluid") || faults.anyBelow(kSpacing)) return;
+  const double spacing = scene.particleSpacing;
+  if (const auto fault = tooManyParticles(particleCount(scene), spacing, availableMemory()))
+    faults.add(kSpacing, *fault);
+
+  Bounds fluid;
+  for (const auto& source : scene.fluid) fluid.include(source->bounds());
+  if (fluid.empty()) return;
+  const double farthest = std::max(fluid.min.cwiseAbs().maxCoeff(), fluid.max.cwiseAbs().maxCoeff());
+  const double coarsest = farthest * double(std::numeric_limits<float>::epsilon());
+  if (coarsest > spacing / 100) {
+    std::ostringstream text;
+    text << "expected at least " << 100 * coarsest << " m for fluid as far from the origin as " << farthest
+         << " m, where positions are " << coarsest << " m apart, found " << spacing
+         << " m; move the scene to the origin or use a larger spacing";
+    faults.add(kSpacing, text.str());
+  }
+}
+
+}  // namespace
+
+Scene parseScene(std::string_view text, const std::filesystem::path& name,
+                 const std::vector<Override>& overrides) {
+  JsonDocument document = parseJson(text);
+  if (document.broken)
+    throw InputError(name.string() + ":" + document.faults.front().pointer, document.faults.front().message);
+
+  std::vector<std::string> overridden;
+  for (const Override& override : overrides) overridden.push_back(override.pointer);
+  FaultList faults(name.string(), std::move(overridden));
+  for (DocumentFault& fault : document.faults) faults.add(fault.pointer, std::move(fault.message));
+
+  Scene scene;
+  scene.file = name;
+  if (!document.root.is_object()) {
+    faults.add("", "expected an object, found " + describeJson(document.root));
+    throw InputError(faults.faults());
+  }
+  applyOverrides(overrides, document.root, faults);
+  JsonReader::read(document.root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
+  checkWhole(scene, faults);
+  if (!faults.empty()) throw InputError(faults.faults());
+  if (scene.name.empty()) scene.name = scene.stem();
+  return scene;
+}
+
+Scene readScene(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return parseScene(readTextFile(file, "a scene file"), file, overrides);
+}
+
+}  // namespace migiwa

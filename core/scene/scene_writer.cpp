@@ -1,0 +1,12 @@
+#include "core/scene/scene_writer.h"
+
+#include "core/scene/json_writer.h"
+#include "core/scene/scene_reader.h"
+
+namespace migiwa {
+
+std::string writeScene(Scene scene) {
+  return prettyJson(JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); }));
+}
+
+}  // namespace migiwa

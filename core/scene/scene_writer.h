@@ -1,0 +1,14 @@
+// A scene back as a scene file.
+#pragma once
+
+#include <string>
+
+#include "core/scene/scene.h"
+
+namespace migiwa {
+
+/// The normalised text: every key with its value in force, defaults and the chosen camera included. Reading
+/// it gives the same scene. No other thread may use the scene meanwhile.
+std::string writeScene(Scene scene);
+
+}  // namespace migiwa

@@ -1,0 +1,28 @@
+#include "core/simulation/fill.h"
+
+namespace migiwa {
+
+void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
+  // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take rounding.
+  const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
+  std::vector<Vec3d> centers;
+  for (std::size_t k = 0; k < scene.fluid.size(); ++k) {
+    const FluidSource& source = *scene.fluid[k];
+    centers.clear();
+    source.fill(scene.particleSpacing, centers);
+    const std::size_t before = particles.size();
+    for (const Vec3d& center : centers) {
+      const Vec3f p = center.cast<float>();
+      if (source.trim && boundary.distance(p) < margin) continue;
+      particles.position.emplace_back(p);
+      particles.velocity.emplace_back(Vec3f(source.velocity.cast<float>()));
+      particles.id.push_back(static_cast<std::uint32_t>(particles.size()));
+    }
+    if (particles.size() == before) {
+      scene.warnings.push_back("/fluid/" + std::to_string(k) +
+                               ": no particle is left of this source; it lies within or too near the walls");
+    }
+  }
+}
+
+}  // namespace migiwa

@@ -1,0 +1,62 @@
+// What a picture, an export or a panel may see of a simulation: spans over its state at the end of a step, and a copy
+// of the same for another thread. All per-particle spans have the same length and order.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/stage_times.h"
+#include "core/base/types.h"
+#include "core/scene/color_field.h"
+#include "core/solver/iteration_error.h"
+
+namespace migiwa {
+
+struct FrameInfo {
+  double time = 0;         ///< simulated (s)
+  long steps = 0;          ///< substeps so far
+  float spacing = 0;       ///< particle spacing (m)
+  float supportRadius = 0; ///< (m)
+  std::string handling;    ///< how walls are handled, such as "gamma (product)" or "no correction"
+  int iterations = 0;      ///< of the last step
+  std::vector<IterationError> errors;  ///< of the last step: before the first iteration, then after each
+  StageTimes stages;       ///< of the last frame (s)
+  double stepSeconds = 0;  ///< wall time of the last frame's mean substep
+  std::uint64_t stateHash = 0;
+};
+
+struct FrameView {
+  const FrameInfo& info;
+  std::span<const Float4> positions;   ///< (m)
+  std::span<const Float4> velocities;  ///< (m/s)
+  std::span<const float> density;      ///< rho/rho0 after the last iteration
+  std::span<const float> gamma;
+  std::span<const float> lambda;       ///< of the last iteration, times the squared support radius (1)
+  std::span<const std::uint32_t> neighbours;
+};
+
+/// A copy of a frame view that owns its data.
+struct FrameSnapshot {
+  FrameInfo info;
+  std::vector<Float4> positions, velocities;
+  std::vector<float> density, gamma, lambda;
+  std::vector<std::uint32_t> neighbours;
+
+  void assign(const FrameView& view);
+  FrameView view() const { return {info, positions, velocities, density, gamma, lambda, neighbours}; }
+};
+
+/// Name, unit and fixed range of a colour field, so that colours mean the same in every picture of a scene.
+struct ColorFieldInfo {
+  std::string label;  ///< with symbol, such as "density ρ/ρ₀"
+  std::string unit;   ///< empty for ratios and counts
+  double low = 0, high = 1;
+};
+ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed);
+
+/// The field's value for each particle.
+void colorFieldValues(const FrameView& view, ColorField field, std::vector<float>& out);
+
+}  // namespace migiwa

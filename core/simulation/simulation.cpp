@@ -1,0 +1,178 @@
+#include "core/simulation/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/state_hash.h"
+#include "core/boundary/boundary.h"
+#include "core/boundary/gamma_method.h"
+#include "core/simulation/fill.h"
+#include "core/simulation/health.h"
+#include "core/solver/pbf_solver.h"
+
+namespace migiwa {
+
+struct Simulation::State {
+  State(Scene theScene, int threads)
+      : scene(std::move(theScene)), pool(threads), boundary(scene.surfaces), step(pool, boundary) {}
+
+  void configure();
+  void advanceSubstep(float dt);
+
+  Scene scene;
+  ThreadPool pool;
+  Boundary boundary;
+  StepState step;
+  PickedGamma gamma;
+  std::vector<EffectStage> effects;
+  RunStatistics statistics;
+  Health health;
+  HealthLimits limits;
+  FrameInfo info;
+  long frame = 0;
+  double time = 0;
+};
+
+namespace {
+
+/// Substeps a frame has at most: a run that needs more is told so instead of standing still.
+constexpr long kMostSubsteps = 1000;
+
+}  // namespace
+
+void Simulation::State::configure() {
+  step.parameters = scene.solver;
+  step.gravity = scene.gravity.cast<float>();
+  step.spacing = static_cast<float>(scene.particleSpacing);
+  step.supportRadius = static_cast<float>(scene.supportRadius());
+  step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
+  gamma = {};
+  info.handling = "no correction";
+  statistics.gammaPicked.clear();
+  if (scene.boundary.handling == BoundaryHandling::gamma && !boundary.empty()) {
+    gamma = makeGammaMethod(scene.boundary.gammaMethod, {boundary, scene.solver.kernel, step.supportRadius});
+    info.handling = "gamma: " + gamma.name;
+    statistics.gammaPicked = gamma.name;
+    statistics.gammaReason = gamma.reason;
+  }
+  step.gammaMethod = gamma.method.get();
+  info.spacing = step.spacing;
+  info.supportRadius = step.supportRadius;
+  limits = healthLimits(scene);
+}
+
+Simulation::Simulation(Scene scene, int threads) : state_(std::make_unique<State>(std::move(scene), threads)) {
+  State& state = *state_;
+  fillScene(state.scene, state.boundary, state.step.particles);
+  for (const NamedEffect& effect : state.scene.effects) state.effects.push_back({effect.name, effect.effect});
+  state.configure();
+  if (const long inside = stabilise(state.step); inside > 0) {
+    state.statistics.note("started_in_wall", 0,
+                          std::to_string(inside) + " particles began nearer than half a spacing to a wall or beyond "
+                                                   "it; they were moved out without gaining speed");
+  } else {
+    prepareFields(state.step);
+  }
+  state.health = inspect(state.step, state.limits);
+  state.info.stateHash = stateHash();
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::State::advanceSubstep(float dt) {
+  const auto start = std::chrono::steady_clock::now();
+  step.timeStep = dt;
+  step.gammaFloored = 0;
+  step.times.clear();
+  advanceStep(step, effects);
+  step.times.time("check", [&] { health = inspect(step, limits); });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics.record(step, health, dt, seconds);
+}
+
+void Simulation::advanceFrame() {
+  State& state = *state_;
+  if (stopped()) return;
+  const SolverParameters& parameters = state.scene.solver;
+  const double frameStep = parameters.timeStep;
+  const double longest = frameStep / parameters.substeps;
+  const double reach = parameters.cfl * static_cast<double>(state.step.supportRadius);
+  const double fall = state.scene.gravity.norm();
+
+  StageTimes frameTimes;
+  double wallSeconds = 0;
+  double left = frameStep;
+  long taken = 0;
+  while (left > 1e-9 * frameStep && !stopped()) {
+    double step = longest;
+    if (parameters.cfl > 0) {
+      const double speed = static_cast<double>(state.health.maxSpeed) + fall * longest;
+      if (speed * step > reach) step = reach / speed;
+    }
+    long parts = static_cast<long>(std::ceil(left / step - 1e-6));
+    if (parts > kMostSubsteps - taken) {
+      state.statistics.note("cfl_not_met", state.statistics.steps,
+                            "the fastest particle would need more than " + std::to_string(kMostSubsteps) +
+                                " substeps a frame; a smaller time_step helps");
+      parts = std::max(1L, kMostSubsteps - taken);
+    }
+    const double dt = left / static_cast<double>(std::max(parts, 1L));
+    state.advanceSubstep(static_cast<float>(dt));
+    left -= dt;
+    ++taken;
+    frameTimes.add(state.step.times);
+    wallSeconds += static_cast<double>(state.statistics.stepSeconds.back());
+  }
+  ++state.frame;
+  state.time += frameStep;
+  state.statistics.simulatedSeconds = state.time;
+
+  state.info.time = state.time;
+  state.info.steps = state.statistics.steps;
+  state.info.iterations = state.step.iterations;
+  state.info.errors = state.step.errors;
+  state.info.stages = frameTimes;
+  state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
+  state.info.stateHash = stateHash();
+}
+
+long Simulation::frameAt(double time) const {
+  return std::lround(time / state_->scene.solver.timeStep);
+}
+long Simulation::frame() const { return state_->frame; }
+double Simulation::time() const { return state_->time; }
+
+Settings Simulation::settings() const { return {state_->scene.solver, state_->scene.boundary}; }
+
+void Simulation::apply(const Settings& settings) {
+  state_->scene.solver = settings.solver;
+  state_->scene.boundary = settings.boundary;
+  state_->configure();
+}
+
+const Scene& Simulation::scene() const { return state_->scene; }
+
+FrameView Simulation::view() const {
+  const StepState& step = state_->step;
+  return {state_->info, step.particles.position, step.particles.velocity, step.density,
+          step.gamma,   step.lambda,             step.neighbours.counts()};
+}
+
+std::uint64_t Simulation::stateHash() const {
+  const StepState& step = state_->step;
+  return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, state_->pool);
+}
+
+const RunStatistics& Simulation::statistics() const { return state_->statistics; }
+int Simulation::threads() const { return state_->pool.threads(); }
+bool Simulation::stopped() const { return state_->statistics.failed(); }
+
+std::vector<LineSegment> Simulation::wireframe() const {
+  std::vector<LineSegment> lines;
+  const Bounds bounds = state_->scene.bounds();
+  for (const auto& surface : state_->scene.surfaces) surface->wireframe(bounds, lines);
+  return lines;
+}
+
+}  // namespace migiwa

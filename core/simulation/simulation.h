@@ -1,0 +1,55 @@
+// A scene in motion. Owns the particles and the solver; knows nothing of windows, files and pictures.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/base/parallel.h"
+#include "core/scene/scene.h"
+#include "core/simulation/frame_view.h"
+#include "core/simulation/statistics.h"
+
+namespace migiwa {
+
+/// What may change between two steps of a running simulation.
+struct Settings {
+  SolverParameters solver;
+  BoundaryParameters boundary;
+};
+
+class Simulation {
+ public:
+  /// Fills the sources and prepares the walls. `threads` 0 takes what the machine has.
+  explicit Simulation(Scene scene, int threads = 0);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// One frame: `time_step` of simulated time, in as many substeps as the scene and the CFL rule ask for.
+  void advanceFrame();
+  /// The number of the frame that a time falls on.
+  long frameAt(double time) const;
+  long frame() const;
+  double time() const;
+
+  Settings settings() const;
+  /// Takes effect with the next frame. Changing the kernel or the support ratio keeps positions and velocities.
+  void apply(const Settings& settings);
+
+  const Scene& scene() const;
+  FrameView view() const;
+  /// Hash of ids, positions and velocities; the same for any number of threads.
+  std::uint64_t stateHash() const;
+  const RunStatistics& statistics() const;
+  int threads() const;
+  /// True after a non-finite state or a lost particle; advanceFrame then does nothing more.
+  bool stopped() const;
+  /// Walls for drawing.
+  std::vector<LineSegment> wireframe() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace migiwa

@@ -1,0 +1,54 @@
+#include "core/simulation/statistics.h"
+
+#include <algorithm>
+
+#include "core/simulation/health.h"
+
+namespace migiwa {
+
+void RunStatistics::note(const std::string& kind, long step, const std::string& detail) {
+  const auto known = std::find_if(trouble.begin(), trouble.end(), [&](const Trouble& t) { return t.kind == kind; });
+  if (known != trouble.end()) {
+    ++known->count;
+  } else {
+    trouble.push_back({kind, step, 1, detail});
+  }
+}
+
+void RunStatistics::record(const StepState& state, const Health& health, double dt, double seconds) {
+  ++steps;
+  simulatedSeconds += dt;
+  wallSeconds += seconds;
+  stepSeconds.push_back(static_cast<float>(seconds));
+  stages.add(state.times);
+  iterationSum += state.iterations;
+  iterationMax = std::max(iterationMax, state.iterations);
+  const IterationError& error = state.errors.back();
+  densityErrorSum += error.mean;
+  densityErrorMax = std::max(densityErrorMax, error.max);
+  maxPenetration = std::max(maxPenetration, static_cast<double>(health.maxPenetration));
+  maxSpeed = std::max(maxSpeed, static_cast<double>(health.maxSpeed));
+  lostParticles = health.lost;
+  nonfiniteParticles = health.nonfinite;
+
+  if (error.mean > state.parameters.tolerance) {
+    note("not_converged", steps,
+         "mean density error " + std::to_string(error.mean) + " after " + std::to_string(state.iterations) +
+             " iterations, tolerance " + std::to_string(state.parameters.tolerance));
+  }
+  if (state.gammaFloored > 0) {
+    note("gamma_floor", steps, std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
+  }
+  if (health.nonfinite > 0) {
+    note("nonfinite", steps,
+         std::to_string(health.nonfinite) + " particles are not finite, particle " +
+             std::to_string(health.firstBad) + " among them");
+  }
+  if (health.lost > 0) {
+    note("lost_particle", steps,
+         std::to_string(health.lost) + " particles left the scene, particle " + std::to_string(health.firstBad) +
+             " among them");
+  }
+}
+
+}  // namespace migiwa

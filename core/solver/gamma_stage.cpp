@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <array>
+
+#include "core/solver/stages.h"
+
+namespace migiwa::stages {
+
+namespace {
+
+/// Below this, 1/gamma stops meaning a density: a lone particle in a corner would already read as compressed.
+constexpr float kGammaFloor = 0.2F;
+/// Particles this many support radii from a wall are watched: they may reach it within the iterations.
+constexpr float kWatchReach = 1.5F;
+/// gamma is taken as linear over moves up to this many support radii.
+constexpr float kLinearReach = 0.05F;
+
+/// Evaluates the slots' samples at their points, a batch at a time.
+void evaluate(const GammaMethod& method, std::span<WallSlot> slots) {
+  std::array<Float4, 64> points;
+  std::array<GammaSample, 64> samples;
+  for (std::size_t begin = 0; begin < slots.size(); begin += points.size()) {
+    const std::size_t n = std::min(points.size(), slots.size() - begin);
+    for (std::size_t k = 0; k < n; ++k) points[k] = slots[begin + k].at;
+    method.evaluate(std::span(points).first(n), std::span(samples).first(n));
+    for (std::size_t k = 0; k < n; ++k) slots[begin + k].sample = samples[k];
+  }
+}
+
+float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius) {
+  return std::min(slot.sample.gamma + slot.sample.gradient.dot(moved) / supportRadius, 1.0F);
+}
+
+long floorGamma(float& gamma) {
+  if (gamma >= kGammaFloor) return 0;
+  gamma = kGammaFloor;
+  return 1;
+}
+
+}  // namespace
+
+void evaluateGamma(StepState& state) {
+  const std::size_t n = state.current.size();
+  state.gamma.assign(n, 1);
+  state.wallSlot.assign(n, StepState::kNoWall);
+  state.wallSlots.clear();
+  if (state.boundary.empty()) return;
+
+  std::vector<std::vector<WallSlot>> found(chunkCount(n));
+  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::vector<WallSlot>& slots = found[chunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      const float distance = state.boundary.distance(state.current[i].xyz());
+      if (distance >= kWatchReach * state.supportRadius) continue;
+      slots.push_back({static_cast<std::uint32_t>(i), state.current[i], {}});
+      slots.back().sample.distance = distance;
+    }
+    if (state.gammaMethod != nullptr) evaluate(*state.gammaMethod, slots);
+  });
+  for (const std::vector<WallSlot>& slots : found) {
+    for (const WallSlot& slot : slots) {
+      state.wallSlot[slot.particle] = static_cast<std::uint32_t>(state.wallSlots.size());
+      state.wallSlots.push_back(slot);
+      float& gamma = state.gamma[slot.particle];
+      gamma = slot.sample.gamma;
+      state.gammaFloored += floorGamma(gamma);
+    }
+  }
+}
+
+void refreshGamma(StepState& state) {
+  if (state.gammaMethod == nullptr) return;
+  const float reach = kLinearReach * state.supportRadius;
+  state.gammaFloored += parallelReduce(
+      state.pool, state.wallSlots.size(), 0L,
+      [&](std::size_t begin, std::size_t end) {
+        long floored = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          WallSlot& slot = state.wallSlots[k];
+          Vec3f moved = state.current[slot.particle].xyz() - slot.at.xyz();
+          if (moved.squaredNorm() > reach * reach) {
+            slot.at = state.current[slot.particle];
+            evaluate(*state.gammaMethod, {&slot, 1});
+            moved.setZero();
+          }
+          float& gamma = state.gamma[slot.particle];
+          gamma = linearGamma(slot, moved, state.supportRadius);
+          floored += floorGamma(gamma);
+        }
+        return floored;
+      },
+      [](long a, long b) { return a + b; });
+}
+
+}  // namespace migiwa::stages

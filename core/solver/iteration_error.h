@@ -1,0 +1,11 @@
+#pragma once
+
+namespace migiwa {
+
+/// Density error max(rho/rho0 - 1, 0) over the particles, after an iteration.
+struct IterationError {
+  double mean = 0;
+  double max = 0;
+};
+
+}  // namespace migiwa

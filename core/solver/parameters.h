@@ -1,0 +1,46 @@
+// What the solver can be told, with units, ranges and defaults.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "core/sph/kernel_type.h"
+
+namespace migiwa {
+
+/// How lambda becomes a displacement. METHOD: [FM] Eq. 10 is the short form of the constraint's gradient step.
+enum class PositionStep {
+  gradient,      ///< the true gradient of the corrected constraint: lambda/gamma pairs and the wall's push
+  pairsAndWall,  ///< Eq. 10's (lambda_i + lambda_j) pairs and the wall's push
+  paper,         ///< Eq. 10 as printed: pairs only
+};
+inline constexpr std::array<std::string_view, 3> kPositionStepNames{"gradient", "pairs_and_wall", "paper"};
+
+/// How the density is corrected at walls.
+enum class BoundaryHandling {
+  gamma,  ///< [FM] Eq. 5: divided by the part of the kernel that the solid does not cover
+  none,   ///< not at all: the paper's "without correction"; walls only keep centres out
+};
+inline constexpr std::array<std::string_view, 2> kHandlingNames{"gamma", "none"};
+
+struct SolverParameters {
+  double timeStep = 0.005;    ///< a frame's step (unit: s, range: (0, 1])
+  int substeps = 1;           ///< parts that a frame has at least (range: [1, 1000])
+  double cfl = 0.4;           ///< support radii that the fastest particle may move in a substep; 0: no limit (unit: 1)
+  int minIterations = 2;      ///< (range: [1, 1000])
+  int maxIterations = 20;     ///< (range: [1, 1000], at least minIterations)
+  double tolerance = 0.01;    ///< largest mean density error that ends the iterations (unit: 1, range: [0, 1))
+  double cfmEpsilon = 1;      ///< Eq. 11's epsilon over the resting lattice's sum of squared gradients (unit: 1)
+  double supportRatio = 2;    ///< support radius over particle spacing (unit: 1, range: [1.2, 4])
+  double restDensity = 1000;  ///< (unit: kg/m^3)
+  KernelType kernel = KernelType::poly6;
+  PositionStep positionStep = PositionStep::gradient;
+};
+
+struct BoundaryParameters {
+  BoundaryHandling handling = BoundaryHandling::gamma;
+  int gammaMethod = 0;  ///< index into gammaMethodNames(); 0 is "auto"
+};
+
+}  // namespace migiwa

@@ -1,0 +1,74 @@
+// Everything that the stages of a step read and write. Per-particle arrays share one order, along the search grid;
+// `id` tells particles apart across steps. Lengths inside the solver are metres; densities are rho/rho0; gradients are
+// per support radius, so that nothing over- or underflows with the size of the scene.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/stage_times.h"
+#include "core/boundary/boundary.h"
+#include "core/boundary/gamma_method.h"
+#include "core/solver/iteration_error.h"
+#include "core/solver/parameters.h"
+#include "core/sph/neighbour_search.h"
+#include "core/sph/resting_lattice.h"
+
+namespace migiwa {
+
+/// What lasts from step to step.
+struct Particles {
+  std::vector<Float4> position;  ///< (m)
+  std::vector<Float4> velocity;  ///< (m/s)
+  std::vector<std::uint32_t> id;
+  std::size_t size() const { return id.size(); }
+};
+
+/// A particle near a wall: where gamma was last evaluated, and what it was there.
+struct WallSlot {
+  std::uint32_t particle;
+  Float4 at;           ///< point of evaluation (m)
+  GammaSample sample;  ///< at that point
+};
+
+struct StepState {
+  StepState(ThreadPool& threadPool, const Boundary& walls) : pool(threadPool), boundary(walls) {}
+
+  ThreadPool& pool;
+  const Boundary& boundary;
+  const GammaMethod* gammaMethod = nullptr;  ///< null: no correction
+  SolverParameters parameters;
+  Vec3f gravity = Vec3f::Zero();  ///< (m/s^2)
+  float spacing = 0;              ///< (m)
+  float supportRadius = 0;        ///< (m)
+  RestingLattice lattice{};
+  float timeStep = 0;  ///< of this substep (s)
+
+  Particles particles;
+
+  // Of the current step.
+  std::vector<Float4> current;  ///< predicted position (m); w: the pair factor that Eq. 10 sums
+  std::vector<Float4> next;     ///< the position pass writes here, then swaps with `current`
+  CellGrid grid;
+  NeighbourLists neighbours;
+  std::vector<WallSlot> wallSlots;
+  std::vector<std::uint32_t> wallSlot;  ///< of each particle, or kNoWall
+  std::vector<float> gamma;
+  std::vector<float> density;  ///< rho/rho0
+  std::vector<float> lambda;   ///< Eq. 11 over the squared support radius (1)
+  std::vector<IterationError> errors;
+  int iterations = 0;
+
+  // Guards that acted in this step.
+  long gammaFloored = 0;
+
+  StageTimes times;
+
+  static constexpr std::uint32_t kNoWall = std::numeric_limits<std::uint32_t>::max();
+  /// Centres stay this far inside the fluid side (m).
+  float wallMargin() const { return 0.5F * spacing; }
+};
+
+}  // namespace migiwa

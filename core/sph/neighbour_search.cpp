@@ -1,0 +1,132 @@
+#include "core/sph/neighbour_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace migiwa {
+
+namespace {
+
+struct Box {
+  Vec3f min = Vec3f::Constant(std::numeric_limits<float>::infinity());
+  Vec3f max = Vec3f::Constant(-std::numeric_limits<float>::infinity());
+};
+
+Box boundingBox(std::span<const Float4> positions, ThreadPool& pool) {
+  return parallelReduce(
+      pool, positions.size(), Box{},
+      [&](std::size_t begin, std::size_t end) {
+        Box box;
+        for (std::size_t i = begin; i < end; ++i) {
+          box.min = box.min.cwiseMin(positions[i].xyz());
+          box.max = box.max.cwiseMax(positions[i].xyz());
+        }
+        return box;
+      },
+      [](Box a, const Box& b) {
+        a.min = a.min.cwiseMin(b.min);
+        a.max = a.max.cwiseMax(b.max);
+        return a;
+      });
+}
+
+}  // namespace
+
+int CellGrid::cell(float offset, int axis) const {
+  // Clamped as float first: a cast of what does not fit an int is undefined.
+  const float scaled = std::floor(offset * inverseCell_);
+  const auto last = static_cast<float>(size_[axis]);
+  return static_cast<int>(std::clamp(scaled, -1.0F, last));
+}
+
+void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPool& pool) {
+  const std::size_t n = positions.size();
+  order_.resize(n);
+  keys_.resize(n);
+  if (n == 0) {
+    start_.assign(2, 0);
+    size_[0] = size_[1] = size_[2] = 1;
+    return;
+  }
+  const Box box = boundingBox(positions, pool);
+  originX_ = box.min.x(), originY_ = box.min.y(), originZ_ = box.min.z();
+  const Vec3f extent = box.max - box.min;
+
+  // A cell a little wider than the radius: rounding can then never put a neighbour two cells away.
+  double size = static_cast<double>(cellSize) * 1.0001;
+  const double most = 4.0 * static_cast<double>(n) + 4096;
+  const auto cellsAlong = [&](int axis) { return std::floor(static_cast<double>(extent[axis]) / size) + 1; };
+  while (cellsAlong(0) * cellsAlong(1) * cellsAlong(2) > most) size *= 1.5;
+  inverseCell_ = static_cast<float>(1 / size);
+  for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(cellsAlong(axis)) + 1;
+
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Float4& p = positions[i];
+      keys_[i] = static_cast<std::uint32_t>((cellZ(p.z) * size_[1] + cellY(p.y)) * size_[0] + cellX(p.x));
+    }
+  });
+
+  const std::size_t cells = static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+                            static_cast<std::size_t>(size_[2]);
+  start_.assign(cells + 1, 0);
+  for (const std::uint32_t key : keys_) ++start_[key + 1];
+  for (std::size_t c = 0; c < cells; ++c) start_[c + 1] += start_[c];
+  // Filling backwards moves each cell's end to its start and keeps the particles of a cell in their order.
+  std::vector<std::uint32_t>& place = start_;
+  for (std::size_t i = n; i-- > 0;) order_[--place[keys_[i] + 1]] = static_cast<std::uint32_t>(i);
+  // place[c + 1] is now the start of cell c: shift back by one.
+  std::move(start_.begin() + 1, start_.end(), start_.begin());
+  start_[cells] = static_cast<std::uint32_t>(n);
+}
+
+std::pair<std::uint32_t, std::uint32_t> CellGrid::row(int x0, int x1, int y, int z) const {
+  if (y < 0 || z < 0 || y >= size_[1] || z >= size_[2]) return {0, 0};
+  x0 = std::max(x0, 0);
+  x1 = std::min(x1, size_[0] - 1);
+  if (x0 > x1) return {0, 0};
+  const auto first = static_cast<std::size_t>((z * size_[1] + y) * size_[0]);
+  return {start_[first + static_cast<std::size_t>(x0)], start_[first + static_cast<std::size_t>(x1) + 1]};
+}
+
+void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius, ThreadPool& pool) {
+  const std::size_t n = positions.size();
+  chunks_.resize(chunkCount(n));
+  start_.resize(n);
+  count_.resize(n);
+  const float radius2 = radius * radius;
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::vector<std::uint32_t>& list = chunks_[chunk];
+    list.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Float4 p = positions[i];
+      start_[i] = static_cast<std::uint32_t>(list.size());
+      const int cx = grid.cellX(p.x), cy = grid.cellY(p.y), cz = grid.cellZ(p.z);
+      for (int z = cz - 1; z <= cz + 1; ++z) {
+        for (int y = cy - 1; y <= cy + 1; ++y) {
+          const auto [from, to] = grid.row(cx - 1, cx + 1, y, z);
+          const std::size_t known = list.size();
+          list.resize(known + (to - from));
+          std::uint32_t* out = list.data() + known;
+          for (std::uint32_t j = from; j < to; ++j) {
+            const float dx = p.x - positions[j].x, dy = p.y - positions[j].y, dz = p.z - positions[j].z;
+            *out = j;
+            out += static_cast<int>(dx * dx + dy * dy + dz * dz < radius2) & static_cast<int>(j != i);
+          }
+          list.resize(static_cast<std::size_t>(out - list.data()));
+        }
+      }
+      count_[i] = static_cast<std::uint32_t>(list.size()) - start_[i];
+    }
+  });
+}
+
+std::size_t NeighbourLists::bytes() const {
+  std::size_t total = (start_.capacity() + count_.capacity()) * sizeof(std::uint32_t);
+  for (const std::vector<std::uint32_t>& chunk : chunks_) total += chunk.capacity() * sizeof(std::uint32_t);
+  return total;
+}
+
+}  // namespace migiwa

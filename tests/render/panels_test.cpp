@@ -1,0 +1,123 @@
+// Panels and mouse through the same frame() that a window uses, with input made up.
+#include <gtest/gtest.h>
+
+#include "app/platform/egl_context.h"
+#include "app/viewer/viewer.h"
+#include "tests/render/test_scene.h"
+
+namespace migiwa {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720;
+
+class PanelsTest : public testing::Test {
+ protected:
+  Wishes frame(const InputState& input) { return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight); }
+
+  static InputState mouseAt(float x, float y, bool pressed = false) {
+    InputState input;
+    input.mouseInside = true;
+    input.mouseX = x, input.mouseY = y;
+    input.buttons[0] = pressed;
+    return input;
+  }
+
+  /// Moves there, presses for two frames, lets go: the wishes of all frames together.
+  Wishes click(float x, float y) {
+    Wishes all;
+    for (const bool pressed : {false, false, true, true, false, false}) {
+      const Wishes now = frame(mouseAt(x, y, pressed));
+      all.play |= now.play, all.pause |= now.pause, all.step |= now.step, all.reset |= now.reset;
+      all.settings |= now.settings, all.savePicture |= now.savePicture;
+    }
+    return all;
+  }
+
+  static InputState key(Key key) {
+    InputState input;
+    input.keys[static_cast<std::size_t>(key)] = true;
+    return input;
+  }
+
+  std::unique_ptr<GlContext> context_ = makeEglContext();
+  FrameSnapshot frame_ = frameOf({Vec3f(0.5F, 0.4F, 0.25F)}, 0.1F);
+  RunStatus run_;
+  Viewer viewer_{smallScene(), {}, {1, true, true}};
+};
+
+TEST_F(PanelsTest, PlayStepAndResetAreAskedForByTheirButtons) {
+  EXPECT_TRUE(click(55, 40).play);
+  EXPECT_TRUE(click(160, 40).step);
+  EXPECT_TRUE(click(260, 40).reset);
+  run_.playing = true;
+  const Wishes wishes = click(55, 40);
+  EXPECT_TRUE(wishes.pause);
+  EXPECT_FALSE(wishes.play);
+}
+
+TEST_F(PanelsTest, StoppedSimulationOffersResetOnly) {
+  run_ = {false, true, "lost_particle at step 3: 1 particle left the tank"};
+  EXPECT_FALSE(click(55, 40).play);
+  EXPECT_TRUE(click(260, 40).reset);
+}
+
+TEST_F(PanelsTest, CorrectionIsSwitchedByItsCheckboxAndByItsKey) {
+  ASSERT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::gamma);
+  EXPECT_TRUE(click(134, 109).settings);
+  EXPECT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::none);
+  EXPECT_TRUE(frame(key(Key::c)).settings);
+  EXPECT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::gamma);
+}
+
+TEST_F(PanelsTest, MaxIterationsFollowTheirSlider) {
+  const int before = viewer_.settings().solver.maxIterations;
+  EXPECT_TRUE(click(300, 224).settings);
+  EXPECT_GT(viewer_.settings().solver.maxIterations, before);
+  EXPECT_GE(viewer_.settings().solver.maxIterations, viewer_.settings().solver.minIterations);
+}
+
+TEST_F(PanelsTest, DraggingTheSceneTurnsTheCameraAndThePanelsDoNot) {
+  const Vec3d eye = viewer_.view().camera.eye;
+  for (int i = 0; i < 4; ++i) frame(mouseAt(100 + 20.0F * static_cast<float>(i), 650, i > 0));
+  frame(mouseAt(180, 650));
+  EXPECT_EQ(viewer_.view().camera.eye, eye);
+  for (int i = 0; i < 4; ++i) frame(mouseAt(800 + 20.0F * static_cast<float>(i), 400, i > 0));
+  EXPECT_GT((viewer_.view().camera.eye - eye).norm(), 0.05);
+}
+
+TEST_F(PanelsTest, WheelComesNearer) {
+  const auto distance = [&] { return (viewer_.view().camera.eye - viewer_.view().camera.target).norm(); };
+  const double before = distance();
+  InputState input = mouseAt(800, 400);
+  frame(input);
+  input.wheel = 1;
+  frame(input);
+  EXPECT_NEAR(distance(), 0.9 * before, 1e-9);
+}
+
+TEST_F(PanelsTest, DoubleClickLooksAtTheParticle) {
+  viewer_.view().camera.target = {0.6, 0.5, 0.25};
+  frame(mouseAt(700, 400));
+  // The particle's place on the screen: 0.1 m to the left and below the middle of the scene's part.
+  const Rect scene{321, 0, kWidth - 321, kHeight};
+  const Projection projection = makeProjection(viewer_.view().camera, kWidth, kHeight, scene);
+  const Eigen::Vector4f clip = projection.clip * projection.view * Eigen::Vector4f(0.5F, 0.4F, 0.25F, 1);
+  const float x = 321 + (0.5F + 0.5F * clip.x() / clip.w()) * static_cast<float>(scene.width);
+  const float y = (0.5F - 0.5F * clip.y() / clip.w()) * kHeight;
+  for (const bool pressed : {false, true, false, true, false}) frame(mouseAt(x, y, pressed));
+  // The front of the particle, half its diameter nearer than its centre.
+  EXPECT_NEAR((viewer_.view().camera.target - Vec3d(0.5, 0.4, 0.25)).norm(), 0.05, 0.01);
+}
+
+TEST_F(PanelsTest, PanelsAreHiddenByTheirKey) {
+  frame(InputState{});
+  const Image with = viewer_.picture();
+  frame(key(Key::h));
+  frame(InputState{});
+  const Image without = viewer_.picture();
+  EXPECT_LT(with.pixel(310, 700)[0], 60) << "the dark panel";
+  EXPECT_GT(without.pixel(310, 700)[0], 150) << "the scene";
+}
+
+}  // namespace
+}  // namespace migiwa

@@ -1,0 +1,53 @@
+// A real window: needs a display, such as xvfb-run's.
+#include <gtest/gtest.h>
+
+#include "app/platform/egl_context.h"
+#include "app/platform/glfw_window.h"
+#include "app/viewer/viewer.h"
+#include "app/viewer/window_loop.h"
+#include "core/scene/scene_reader.h"
+#include "core/simulation/simulation.h"
+#include "tests/render/test_scene.h"
+
+namespace migiwa {
+namespace {
+
+Image pictureIn(const Simulation& simulation, bool panels) {
+  Viewer viewer(simulation.scene(), simulation.wireframe(), {scaleFor(640, 360), panels, false});
+  return viewer.takePicture(simulation.view(), RunStatus{}, 640, 360);
+}
+
+TEST(WindowTest, DrawsTheSameBytesAsEgl) {
+  Simulation simulation(readScene(MIGIWA_SOURCE_DIR "/scenes/dam_break.json"));
+  for (int i = 0; i < 40; ++i) simulation.advanceFrame();
+  for (const bool panels : {false, true}) {
+    Image offScreen, inWindow;
+    {
+      const auto context = makeEglContext();
+      offScreen = pictureIn(simulation, panels);
+    }
+    {
+      const GlfwWindow window("Migiwa", 400, 300);
+      inWindow = pictureIn(simulation, panels);
+    }
+    EXPECT_EQ(offScreen.rgba, inWindow.rgba) << (panels ? "with" : "without") << " panels";
+  }
+}
+
+TEST(WindowTest, LoopDrawsSoManyFramesAndCloses) {
+  WindowOptions options;
+  options.frames = 20;
+  options.threads = 1;
+  runWindow(smallScene(), options);
+}
+
+TEST(WindowTest, SizeIsAskedForInPixels) {
+  const GlfwWindow window("Migiwa", 500, 320);
+  EXPECT_EQ(window.framebufferSize(), (std::array<int, 2>{500, 320}));
+  EXPECT_FALSE(window.shouldClose());
+  EXPECT_GE(window.contentScale(), 1);
+  EXPECT_NE(window.renderer().find("OpenGL 4."), std::string::npos) << window.renderer();
+}
+
+}  // namespace
+}  // namespace migiwa

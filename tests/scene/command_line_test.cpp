@@ -1,0 +1,232 @@
+// The program as a user starts it: exit codes, where messages go, and that a refused run writes nothing.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kScenes = MIGIWA_SOURCE_DIR "/scenes/";
+const std::string kBad = MIGIWA_SOURCE_DIR "/tests/scene/bad/";
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string readAll(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// In single quotes, so that the shell passes it on as it is.
+std::string shellQuoted(const std::string& word) {
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    base_ = fs::path(testing::TempDir()) / (std::string("migiwa_command_line_") +
+                                            testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(base_);
+    folder_ = base_ / "work";
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(base_); }
+
+  /// Runs the program in an empty folder of its own.
+  Outcome run(const std::vector<std::string>& arguments) const {
+    std::string command = "cd " + shellQuoted(folder_.string()) + " && " + shellQuoted(MIGIWA_PROGRAM);
+    for (const std::string& argument : arguments) command += " " + shellQuoted(argument);
+    command += " >" + shellQuoted((base_ / "out").string()) + " 2>" + shellQuoted((base_ / "err").string());
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(base_ / "out"), readAll(base_ / "err")};
+  }
+
+  bool folderIsEmpty() const { return fs::is_empty(folder_); }
+
+  fs::path base_, folder_;
+};
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_F(CommandLine, HelpIsAResultForEveryCommand) {
+  const Outcome general = run({"--help"});
+  EXPECT_EQ(general.code, 0);
+  for (const char* command : {"view", "render", "simulate", "check", "summary"}) {
+    EXPECT_NE(general.out.find(command), std::string::npos);
+    const Outcome outcome = run({command, "--help"});
+    EXPECT_EQ(outcome.code, 0) << command;
+    for (const char* option : {"--set", "--threads", "--quiet", "--help"})
+      EXPECT_NE(outcome.out.find(option), std::string::npos) << command << " " << option;
+  }
+}
+
+TEST_F(CommandLine, WrongWordsAreRefused) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"fly"},
+      {"--fly"},
+      {kScenes + "dam_break.json"},
+      {"simulate"},
+      {"simulate", kScenes + "dam_break.json", "--fly"},
+      {"simulate", kScenes + "dam_break.json", "--until"},
+      {"simulate", kScenes + "dam_break.json", "--until", "soon"},
+      {"simulate", kScenes + "dam_break.json", "--until", "-1"},
+      {"simulate", kScenes + "dam_break.json", "--until", "nan"},
+      {"simulate", kScenes + "dam_break.json", "--until", "inf"},
+      {"simulate", kScenes + "dam_break.json", "--threads", "257"},
+      {"simulate", kScenes + "dam_break.json", "--threads", "-1"},
+      {"simulate", kScenes + "dam_break.json", "--threads", "many"},
+      {"simulate", kScenes + "dam_break.json", "--set", "duration=1"},
+      {"simulate", kScenes + "dam_break.json", "--set"},
+      {"simulate", kScenes + "dam_break.json", kScenes + "still_tank.json"},
+      {"check"},
+      {"summary"},
+  };
+  for (const auto& arguments : wrong) {
+    const Outcome outcome = run(arguments);
+    std::string shown;
+    for (const std::string& argument : arguments) shown += argument + " ";
+    EXPECT_EQ(outcome.code, 2) << shown;
+    EXPECT_EQ(outcome.out, "") << shown;
+    EXPECT_GE(lines(outcome.err), 1U) << shown;
+  }
+  EXPECT_TRUE(folderIsEmpty());
+}
+
+TEST_F(CommandLine, CheckAcceptsTheShippedScenes) {
+  const Outcome outcome = run({"check", kScenes + "dam_break.json", kScenes + "still_tank.json"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out, kScenes + "dam_break.json: ok (9216 particles at most)\n" + kScenes +
+                             "still_tank.json: ok (7200 particles at most)\n");
+}
+
+TEST_F(CommandLine, CheckListsTheFaultsOfAllFiles) {
+  const Outcome outcome = run({"check", kBad + "broken_nan.json", kScenes + "dam_break.json", "missing.json",
+                               kBad + "wrong_types.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, kScenes + "dam_break.json: ok (9216 particles at most)\n");
+  EXPECT_NE(outcome.err.find("broken_nan.json:3:15: expected a value, found 'NaN'\n"), std::string::npos);
+  EXPECT_NE(outcome.err.find("missing.json: expected a scene file, found no such file\n"), std::string::npos);
+  EXPECT_NE(outcome.err.find("wrong_types.json:/name: expected a text"), std::string::npos);
+}
+
+TEST_F(CommandLine, CheckPrintsASceneThatIsAScene) {
+  const Outcome first =
+      run({"check", "--print", kScenes + "dam_break.json", "--set", "/solver/tolerance=0.25"});
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_NE(first.out.find("\"tolerance\": 0.25"), std::string::npos);
+  std::ofstream(folder_ / "printed.json") << first.out;
+  const Outcome second = run({"check", "--print", "printed.json"});
+  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_EQ(second.out, first.out);
+}
+
+TEST_F(CommandLine, ARefusedRunWritesNothingAndSaysAllOfIt) {
+  const Outcome outcome = run({"simulate", kScenes + "dam_break.json", "--report", "report.json", "--set",
+                               "/solver/tolerance=7", "--set", "/solver/tolerence=7", "--until", "-3"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(
+      outcome.err,
+      "--set /solver/tolerance: expected a number in [0, 1), found 7\n"
+      "--set /solver/tolerence: expected a known key, found \"tolerence\"; did you mean \"tolerance\"?\n"
+      "--until: expected a number in [0, 1e+06] (unit: s), found -3\n");
+  EXPECT_TRUE(folderIsEmpty());
+}
+
+TEST_F(CommandLine, AReportThatCannotBeWrittenIsRefusedBeforeTheRun) {
+  const Outcome outcome =
+      run({"simulate", kScenes + "dam_break.json", "--until", "100000", "--report", "no/report.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.find("--report: expected"), 0U) << outcome.err;
+  EXPECT_TRUE(folderIsEmpty());
+}
+
+TEST_F(CommandLine, SimulateWritesAReportAndNothingElse) {
+  const Outcome outcome = run({"simulate", kScenes + "corner_drop.json", "--until", "0.02", "--report",
+                               "report.json", "--threads", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "") << "no progress bar where there is no terminal";
+  EXPECT_TRUE(fs::exists(folder_ / "report.json"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  const std::string report = readAll(folder_ / "report.json");
+  EXPECT_NE(report.find("\"steps\": 4,"), std::string::npos) << report;
+  EXPECT_NE(report.find("\"threads\": 1,"), std::string::npos) << report;
+}
+
+TEST_F(CommandLine, SimulatePrintsASummaryWithoutAReport) {
+  const Outcome outcome = run({"simulate", kScenes + "corner_drop.json", "--until", "0.01", "--quiet"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.out.find("particles"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(folderIsEmpty());
+}
+
+TEST_F(CommandLine, TheSameRunGivesTheSameHash) {
+  std::vector<std::string> hashes;
+  for (const char* threads : {"1", "1", "3"}) {
+    const Outcome outcome = run({"simulate", kScenes + "corner_drop.json", "--until", "0.03", "--threads",
+                                 threads, "--report", "report.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string report = readAll(folder_ / "report.json");
+    const std::size_t at = report.find("\"state_hash\": \"");
+    ASSERT_NE(at, std::string::npos);
+    hashes.push_back(report.substr(at, 32));
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+TEST_F(CommandLine, AParticleThatFallsOutOfTheSceneIsNumericalTrouble) {
+  // So fast across an open floor that it has left the scene after a frame.
+  std::ofstream(folder_ / "lost.json") << R"({ "format": 1, "particle_spacing": 0.1,
+    "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [0.2, 0.2, 0.2], "velocity": [5000, 0, 0] } ],
+    "boundary": { "surfaces": [ { "shape": "plane", "point": [0, 0, 0], "normal": [0, 1, 0] } ] } })";
+  const Outcome outcome = run({"simulate", "lost.json", "--until", "1", "--report", "report.json"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("lost"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_ / "report.json")) << "the report says what happened";
+}
+
+TEST_F(CommandLine, SummaryComparesReports) {
+  for (const char* handling : {"none", "gamma"}) {
+    const Outcome outcome =
+        run({"simulate", kScenes + "corner_drop.json", "--until", "0.01", "--set",
+             std::string("/boundary/handling=") + handling, "--report", std::string(handling) + ".json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  const Outcome outcome = run({"summary", "none.json", "gamma.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find(" none  "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("edge crowding"), std::string::npos) << outcome.out;
+  std::size_t width = outcome.out.find('\n');
+  for (std::size_t at = 0; at < outcome.out.size(); at += width + 1)
+    EXPECT_EQ(outcome.out.find('\n', at), at + width) << "aligned:\n" << outcome.out;
+}
+
+TEST_F(CommandLine, SummaryRefusesWhatIsNoReport) {
+  const Outcome outcome = run({"summary", kScenes + "dam_break.json", "missing.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("dam_break.json:/: expected a report"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("missing.json: expected a report, found no such file"), std::string::npos)
+      << outcome.err;
+}
+
+}  // namespace

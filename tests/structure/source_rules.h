@@ -1,0 +1,33 @@
+// What holds of the sources themselves: which part of the program may include which, and some plain habits.
+// The rules are data in source_rules.cpp. They work on texts in memory, so that they can be tested on sources
+// that break them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace migiwa::structure {
+
+struct SourceFile {
+  std::string path;  ///< relative to the repository, with forward slashes
+  std::string text;
+};
+
+/// Every function below returns one readable line for each violation.
+using Violations = std::vector<std::string>;
+
+/// Lower parts never include higher ones, and no two parts include each other: base, then sph and boundary,
+/// then solver and effects, then scene, then simulation, then everything that uses a simulation, then the
+/// program.
+Violations checkLayers(const std::vector<SourceFile>& files);
+
+/// Narrower borders: the renderer never sees the solver, a library only shows where it is wrapped.
+Violations checkBorders(const std::vector<SourceFile>& files);
+
+/// Quoted includes name a file of ours from the repository's root; anything else is in angle brackets.
+Violations checkIncludeStyle(const std::vector<SourceFile>& files);
+
+/// Headers say what they are for and are guarded; no file is too long or keeps notes about unfinished work.
+Violations checkHabits(const std::vector<SourceFile>& files);
+
+}  // namespace migiwa::structure
