@@ -58,6 +58,9 @@ class FieldVisitor {
   /// Two numbers, such as the ends of a colour range. `present`, if given, says whether the key is there.
   virtual void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
                     bool* present = nullptr) = 0;
+  /// Any number of number triples, such as the terms of a polynomial.
+  virtual void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
+                       const FieldDoc& doc) = 0;
   /// One of `names`; `index` is its place in the list.
   virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
                       const FieldDoc& doc) = 0;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "core/boundary/plane_hits.h"
 
 namespace migiwa {
 
@@ -16,9 +19,12 @@ Box::Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotati
 }
 
 void Box::describe(FieldVisitor& visitor) {
-  visitor.choice("fluid", fluid_, kFluidNames, {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("min", min_, {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", max_, {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+  visitor.choice("fluid", fluid_, kFluidNames,
+                 {"", "The side of the wall that holds the fluid.", Presence::required});
+  visitor.vector("min", min_,
+                 {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+  visitor.vector("max", max_,
+                 {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
                  [this](FieldVisitor& fields) { rotation_.describe(fields); });
   if ((max_.array() <= min_.array()).any()) {
@@ -108,6 +114,41 @@ void Box::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const
       out.push_back({inside ? Vec3f(-outward) : outward, inside ? within : -within, toWorld(foot)});
     }
   }
+}
+
+void Box::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
+  const Vec3f local = toLocal(origin);
+  if (fluid_ == Fluid::inside) {
+    const float farthest = *std::max_element(hits.begin(), hits.end());
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float side : {-1.0F, 1.0F}) {
+        const float within = half_[axis] - side * local[axis];
+        if (within < farthest) hitPlane(-side * toLocal_.row(axis).transpose(), within, directions, hits);
+      }
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const auto [enter, leave] = crossing(local, directions, k);
+    if (enter < leave && leave > 0) hits[k] = std::min(hits[k], std::max(enter, 0.0F));
+  }
+}
+
+void Box::exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const {
+  const Vec3f local = toLocal(origin);
+  for (std::size_t k = 0; k < exits.size(); ++k) exits[k] = crossing(local, directions, k).leave;
+}
+
+Box::Crossing Box::crossing(const Vec3f& local, const Directions& directions, std::size_t k) const {
+  // Slabs: the ray is in the block between the last entry into a pair of faces and the first exit from one.
+  const Vec3f w = toLocal_ * Vec3f(directions.x[k], directions.y[k], directions.z[k]);
+  Crossing crossing{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float along = std::copysign(std::max(std::abs(w[axis]), 1e-12F), w[axis]);
+    crossing.enter = std::max(crossing.enter, (std::copysign(half_[axis], -along) - local[axis]) / along);
+    crossing.leave = std::min(crossing.leave, (std::copysign(half_[axis], along) - local[axis]) / along);
+  }
+  return crossing;
 }
 
 Vec3d Box::corner(int index) const {

@@ -1,4 +1,5 @@
-// A box wall, upright or turned about its centre: a tank with the fluid inside, or a block with the fluid outside.
+// A box wall, upright or turned about its centre: a tank with the fluid inside, or a block with the fluid
+// outside.
 #pragma once
 
 #include "core/base/rotation.h"
@@ -18,6 +19,10 @@ class Box final : public Surface {
   bool project(Vec3f& p, float margin) const override;
   void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override;
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
+  bool reentrant() const override { return fluid_ == Fluid::outside; }
+  void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
+  bool planar() const override { return true; }
   PieceRule pieceRule() const override {
     return fluid_ == Fluid::inside ? PieceRule::fluidInsideAll : PieceRule::solidInsideAll;
   }
@@ -26,6 +31,11 @@ class Box final : public Surface {
   const BoxGeometry* tank() const override { return fluid_ == Fluid::inside ? &geometry_ : nullptr; }
 
  private:
+  /// Where a ray enters the box and where it leaves it; no crossing unless enter < leave.
+  struct Crossing {
+    float enter, leave;
+  };
+  Crossing crossing(const Vec3f& local, const Directions& directions, std::size_t k) const;
   void prepare();
   Vec3f toLocal(const Vec3f& p) const { return toLocal_ * (p - center_); }
   Vec3f toWorld(const Vec3f& local) const { return center_ + toLocal_.transpose() * local; }

@@ -1,12 +1,17 @@
 #include "core/boundary/plane.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
+#include "core/boundary/plane_hits.h"
+
 namespace migiwa {
 
-Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(normal) { prepare(); }
+Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(normal) {
+  prepare();
+}
 
 void Plane::describe(FieldVisitor& visitor) {
   visitor.vector("point", point_, {"m", "A point of the wall.", Presence::required});
@@ -41,6 +46,10 @@ void Plane::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) con
   if (std::abs(d) < reach) out.push_back({unit_, d, p - d * unit_});
 }
 
+void Plane::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
+  hitPlane(unit_, unit_.dot(origin) - offset_, directions, hits);
+}
+
 void Plane::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const {
   // A square around the scene's shadow on the plane, with a few lines across.
   const Vec3d unit = unit_.cast<double>();
@@ -51,8 +60,10 @@ void Plane::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const 
   constexpr int kCells = 4;
   for (int k = 0; k <= kCells; ++k) {
     const double at = half * (2.0 * k / kCells - 1);
-    out.push_back({(center + at * across - half * along).cast<float>(), (center + at * across + half * along).cast<float>()});
-    out.push_back({(center + at * along - half * across).cast<float>(), (center + at * along + half * across).cast<float>()});
+    out.push_back({(center + at * across - half * along).cast<float>(),
+                   (center + at * across + half * along).cast<float>()});
+    out.push_back({(center + at * along - half * across).cast<float>(),
+                   (center + at * along + half * across).cast<float>()});
   }
 }
 

@@ -15,7 +15,8 @@ class Plane final : public Surface {
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
-  PieceRule pieceRule() const override { return PieceRule::fluidInsideAll; }
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
+  bool planar() const override { return true; }
   Bounds bounds() const override { return {}; }
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 

@@ -1,7 +1,10 @@
-// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and one line
-// in surface_registry.cpp. Distances are metres, positive in the fluid; normals are unit vectors into the fluid.
+// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and
+// one line in surface_registry.cpp. Distances are metres, positive in the fluid; normals are unit vectors
+// into the fluid.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -10,6 +13,7 @@
 #include "core/base/bounds.h"
 #include "core/base/fields.h"
 #include "core/base/types.h"
+#include "core/boundary/directions.h"
 
 namespace migiwa {
 
@@ -47,16 +51,30 @@ class Surface {
   /// Signed distance of p, and the unit normal at the nearest point of the wall.
   virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
 
-  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where two of its
-  /// walls leave no room. Returns whether p moved.
+  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where
+  /// two of its walls leave no room. Returns whether p moved.
   virtual bool project(Vec3f& p, float margin) const = 0;
 
   /// Appends other points at `margin` that p could be moved to, for where other walls bar the shortest way.
   virtual void otherWaysOut(const Vec3f&, float /*margin*/, std::vector<Vec3f>&) const {}
 
-  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of reach.
-  virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const = 0;
-  virtual PieceRule pieceRule() const = 0;
+  /// hits[k] becomes the distance (m) from `origin` along direction k to the first point of the solid, where
+  /// that is less than hits[k]. The origin is on the fluid side.
+  virtual void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const = 0;
+  /// Whether a ray that has hit the solid may come out of it again into fluid.
+  virtual bool reentrant() const { return false; }
+  /// Where it may: exits[k] becomes where direction k leaves the solid that it has hit, infinite where it
+  /// does not.
+  virtual void exits(const Vec3f&, const Directions&, std::span<float> exits) const {
+    std::fill(exits.begin(), exits.end(), std::numeric_limits<float>::infinity());
+  }
+
+  /// Whether the wall is made of planes, and how they combine.
+  virtual bool planar() const { return false; }
+  virtual PieceRule pieceRule() const { return PieceRule::fluidInsideAll; }
+  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of
+  /// reach. A curved wall has one: the tangent plane at its nearest point.
+  virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const;
 
   /// The finite extent, empty for a surface without one.
   virtual Bounds bounds() const = 0;

@@ -2,6 +2,8 @@
 
 #include "core/boundary/box.h"
 #include "core/boundary/plane.h"
+#include "core/boundary/polynomial.h"
+#include "core/boundary/sphere.h"
 
 namespace migiwa {
 
@@ -20,6 +22,8 @@ std::unique_ptr<Surface> make() {
 constexpr std::array kShapes{
     Entry{"plane", make<Plane>},
     Entry{"box", make<Box>},
+    Entry{"sphere", make<Sphere>},
+    Entry{"polynomial", make<Polynomial>},
 };
 
 }  // namespace
@@ -33,6 +37,8 @@ std::span<const std::string_view> surfaceShapes() {
   return names;
 }
 
-std::unique_ptr<Surface> makeSurface(int shape) { return kShapes.at(static_cast<std::size_t>(shape)).make(); }
+std::unique_ptr<Surface> makeSurface(int shape) {
+  return kShapes.at(static_cast<std::size_t>(shape)).make();
+}
 
 }  // namespace migiwa

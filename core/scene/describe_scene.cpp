@@ -74,6 +74,10 @@ void describeBoundary(FieldVisitor& visitor, Scene& scene) {
                  [&](FieldVisitor& fields) {
                    fields.choice("method", boundary.gammaMethod, gammaMethodNames(),
                                  {"", "The approximation; auto picks by the shapes of the walls."});
+                   fields.integer("directions", boundary.directions, Range::closed(8, 65536),
+                                  {"1", "Directions of the method directions."});
+                   fields.integer("samples", boundary.samples, Range::closed(100, 1e8),
+                                  {"1", "Samples of the method monte_carlo."});
                  });
   describeShapes<Surface>(visitor, "surfaces", {"", "Walls. The fluid is on the fluid side of all of them."},
                           scene.surfaces, surfaceShapes(), makeSurface,

@@ -142,6 +142,30 @@ void JsonReader::pair(std::string_view key, std::array<double, 2>& value, const 
   if (present != nullptr) *present = read;
 }
 
+void JsonReader::triples(std::string_view key, std::vector<std::array<double, 3>>& values,
+                         const FieldDoc& doc) {
+  const std::string expected = "an array of arrays of 3 numbers";
+  const Json* const found = find(key, doc, expected);
+  if (found == nullptr) return;
+  if (!found->is_array()) return wrong(key, expected, describeJson(*found));
+  std::vector<std::array<double, 3>> read;
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    const Json& entry = (*found)[k];
+    const bool sound = entry.is_array() && entry.size() == 3 &&
+                       std::all_of(entry.begin(), entry.end(), [](const Json& number) {
+                         return number.is_number() && std::isfinite(number.get<double>());
+                       });
+    if (sound) {
+      read.push_back({entry[0].get<double>(), entry[1].get<double>(), entry[2].get<double>()});
+    } else {
+      faults_.add(childPointer(childPointer(pointer_, key), k),
+                  "expected an array of 3 numbers, found " + describeJson(entry));
+      faulty_.emplace(key);
+    }
+  }
+  if (!faulty_.contains(key)) values = std::move(read);
+}
+
 void JsonReader::choice(std::string_view key, int& index, std::span<const std::string_view> names,
                         const FieldDoc& doc) {
   const std::string expected = (names.size() == 1   ? ""

@@ -32,6 +32,10 @@ void JsonWriter::vector(std::string_view key, Vec3d& value, const FieldDoc&) {
   put(key, Json::array({value.x(), value.y(), value.z()}));
 }
 
+void JsonWriter::triples(std::string_view key, std::vector<std::array<double, 3>>& values, const FieldDoc&) {
+  put(key, values);
+}
+
 void JsonWriter::pair(std::string_view key, std::array<double, 2>& value, const FieldDoc&, bool* present) {
   if (present == nullptr || *present) put(key, value);
 }

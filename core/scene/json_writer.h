@@ -16,6 +16,8 @@ class JsonWriter final : public FieldVisitor {
   void boolean(std::string_view key, bool& value, const FieldDoc& doc) override;
   void text(std::string_view key, std::string& value, const FieldDoc& doc) override;
   void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override;
+  void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
+               const FieldDoc& doc) override;
   void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc, bool* present) override;
   void choice(std::string_view key, int& index, std::span<const std::string_view> names,
               const FieldDoc& doc) override;

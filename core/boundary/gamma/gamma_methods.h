@@ -13,5 +13,13 @@ std::unique_ptr<GammaMethod> makeNearestGamma(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeMeanGamma(const GammaContext& context);
 /// The product over planes at right angles.
 std::unique_ptr<GammaMethod> makeProductGamma(const GammaContext& context);
+/// A Gaussian copula over planes at any angle.
+std::unique_ptr<GammaMethod> makeCopulaGamma(const GammaContext& context);
+/// The mean over fixed directions of the kernel's mass up to the first wall; any shape.
+std::unique_ptr<GammaMethod> makeDirectionsGamma(const GammaContext& context);
+/// The reference: the share of samples of the kernel that lie in the fluid.
+std::unique_ptr<GammaMethod> makeMonteCarloGamma(const GammaContext& context);
+/// Picks among the others at every point, by the shapes in reach.
+std::unique_ptr<GammaMethod> makeAutoGamma(const GammaContext& context);
 
 }  // namespace migiwa

@@ -1,0 +1,84 @@
+#include "core/base/normal_distribution.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace migiwa {
+
+namespace {
+
+/// Half of a 20-point Gauss-Legendre rule on [-1, 1]; the other half mirrors it.
+struct Node {
+  double at, weight;
+};
+constexpr std::array<Node, 10> kNodes{{{0.0765265211334973, 0.1527533871307258},
+                                       {0.2277858511416451, 0.1491729864726037},
+                                       {0.3737060887154195, 0.1420961093183820},
+                                       {0.5108670019508271, 0.1316886384491766},
+                                       {0.6360536807265150, 0.1181945319615184},
+                                       {0.7463319064601508, 0.1019301198172404},
+                                       {0.8391169718222188, 0.0832767415767048},
+                                       {0.9122344282513259, 0.0626720483341091},
+                                       {0.9639719272779138, 0.0406014298003869},
+                                       {0.9931285991850949, 0.0176140071391521}}};
+
+template <class F>
+double integrate(double a, double b, const F& f) {
+  const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
+  double sum = 0;
+  for (const Node& node : kNodes)
+    sum += node.weight * (f(middle - half * node.at) + f(middle + half * node.at));
+  return half * sum;
+}
+
+double normalDensity(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
+}
+
+}  // namespace
+
+double normalCdf(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+
+double normalQuantile(double p) {
+  p = std::clamp(p, 1e-12, 1 - 1e-12);
+  // Abramowitz & Stegun 26.2.23 to 5e-4, then Newton.
+  const double tail = std::min(p, 1 - p);
+  const double t = std::sqrt(-2 * std::log(tail));
+  const double start =
+      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  double x = p < 0.5 ? -start : start;
+  for (int step = 0; step < 3; ++step) x -= (normalCdf(x) - p) / normalDensity(x);
+  return x;
+}
+
+double bivariateNormalCdf(double x, double y, double r) {
+  if (r > 0.9999) return normalCdf(std::min(x, y));
+  if (r < -0.9999) return std::max(0.0, normalCdf(x) + normalCdf(y) - 1);
+  // Drezner & Wesolowsky 1990: the derivative by the correlation is the density, integrated over the angle.
+  const double angle = std::asin(r);
+  const auto density = [&](double theta) {
+    const double c = std::cos(theta);
+    return std::exp(-(x * x + y * y - 2 * x * y * std::sin(theta)) / (2 * c * c));
+  };
+  // Two panels: near |r| = 1 the density changes fast at the far end.
+  const double middle = 0.8 * angle;
+  const double turn = integrate(0, middle, density) + integrate(middle, angle, density);
+  return std::clamp(normalCdf(x) * normalCdf(y) + turn / (2 * std::numbers::pi), 0.0, 1.0);
+}
+
+double trivariateNormalCdf(double x, double y, double z, double rxy, double rxz, double ryz) {
+  // Conditional on X the others are a bivariate normal pair; X runs over what matters of (-inf, x].
+  constexpr double kFar = 6;
+  if (x <= -kFar) return 0;
+  const double sy = std::sqrt(std::max(1 - rxy * rxy, 1e-8)), sz = std::sqrt(std::max(1 - rxz * rxz, 1e-8));
+  const double r = std::clamp((ryz - rxy * rxz) / (sy * sz), -1.0, 1.0);
+  return integrate(-kFar, std::min(x, kFar), [&](double t) {
+    return normalDensity(t) * bivariateNormalCdf((y - rxy * t) / sy, (z - rxz * t) / sz, r);
+  });
+}
+
+}  // namespace migiwa

@@ -1,0 +1,64 @@
+// The planar walls in reach of a point as half-spaces. The fluid is the intersection of the tanks'
+// half-spaces less the blocks, each an intersection of its own:
+//   gamma = P(tanks) - sum over blocks of P(tanks and block),
+// where P is the part of the kernel inside all half-spaces of a set. Blocks do not overlap each other.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/boundary/boundary.h"
+
+namespace migiwa {
+
+/// Half-space with its unit normal pointing inside; e > 0 where the point is inside, over the support radius.
+struct HalfSpace {
+  Vec3f normal;
+  float e;
+};
+
+struct HalfSpaces {
+  std::vector<HalfSpace> tanks;
+  std::vector<std::vector<HalfSpace>> blocks;
+
+  /// Takes the planar pieces of the surfaces that are nearer than the support radius.
+  void collect(const Boundary& boundary, const Vec3f& p, float supportRadius);
+
+ private:
+  std::vector<WallPiece> pieces_;
+};
+
+/// Adds a half-space to an intersection: of two that look the same way, the narrower counts, or coplanar
+/// walls would count twice.
+void intersect(std::vector<HalfSpace>& set, const HalfSpace& added);
+
+/// The part of a kernel inside one half-space, or between two that face each other.
+struct KernelPart {
+  float value;     ///< in [0, 1]
+  Vec3f gradient;  ///< of the value, times the support radius
+  Vec3f axis;      ///< normal of the first half-space
+};
+
+/// Splits an intersection into its axes. What two parallel planes take away adds up.
+template <class Kernel>
+void kernelParts(std::span<const HalfSpace> set, std::vector<KernelPart>& parts) {
+  parts.clear();
+  for (const HalfSpace& half : set) {
+    const float taken = 1 - Kernel::planeGamma(half.e);
+    const Vec3f gradient = Kernel::planeGammaSlope(half.e) * half.normal;
+    KernelPart* opposite = nullptr;
+    for (KernelPart& part : parts)
+      if (part.axis.dot(half.normal) < -0.999F) opposite = &part;
+    if (opposite == nullptr) {
+      parts.push_back({1 - taken, gradient, half.normal});
+    } else if (opposite->value > taken) {
+      opposite->value -= taken;
+      opposite->gradient += gradient;
+    } else {
+      opposite->value = 0;
+      opposite->gradient.setZero();
+    }
+  }
+}
+
+}  // namespace migiwa

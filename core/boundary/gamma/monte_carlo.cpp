@@ -1,0 +1,88 @@
+// gamma by sampling the kernel: the share of samples that lie in the fluid. Slow; the reference for the
+// others. The samples are a fixed quasi-random set (Roberts' R3 sequence), drawn with the density of the
+// kernel itself, so the error falls nearly as 1/samples and neighbouring points share it.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/boundary/gamma/gamma_methods.h"
+#include "core/sph/kernels.h"
+#include "core/sph/radial_integrals.h"
+
+namespace migiwa {
+
+namespace {
+
+template <class Kernel>
+class MonteCarloGamma final : public GammaMethod {
+ public:
+  explicit MonteCarloGamma(const GammaContext& context)
+      : boundary_(context.boundary), support_(context.supportRadius) {
+    // 1/g, 1/g^2, 1/g^3 for the real root g of g^4 = g + 1.
+    constexpr double kGolden = 1.2207440846057596;
+    double a = 0.5, b = 0.5, c = 0.5;
+    for (int k = 0; k < context.samples; ++k) {
+      a += 1 / kGolden, b += 1 / (kGolden * kGolden), c += 1 / (kGolden * kGolden * kGolden);
+      a -= std::floor(a), b -= std::floor(b), c -= std::floor(c);
+      const double z = 1 - 2 * a, across = std::sqrt(std::max(1 - z * z, 0.0)),
+                   angle = 2 * std::numbers::pi * b;
+      const Vec3f direction(static_cast<float>(across * std::cos(angle)),
+                            static_cast<float>(across * std::sin(angle)), static_cast<float>(z));
+      const float r = radiusOfMass(static_cast<float>(c));
+      const float density = std::max(Kernel::value(r), 1e-20F);
+      samples_.push_back({r * direction, -Kernel::derivative(r) / density * direction,
+                          -PairKernel<Kernel>::derivative(r) / density * direction});
+    }
+  }
+
+  void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3f p = points[i].xyz();
+      out[i] = GammaSample{};
+      out[i].distance = boundary_.distance(p);
+      if (out[i].distance >= support_) continue;
+      // The solid's part of the gradient is minus the fluid's, and has fewer samples near most walls.
+      long solid = 0;
+      Vec3d gradient = Vec3d::Zero(), pairGradient = Vec3d::Zero();
+      for (const Sample& sample : samples_) {
+        if (boundary_.distance(p + support_ * sample.offset) >= 0) continue;
+        ++solid;
+        gradient -= sample.slope.template cast<double>();
+        pairGradient -= sample.pairSlope.template cast<double>();
+      }
+      const double count = static_cast<double>(samples_.size());
+      out[i].gamma = static_cast<float>(1 - static_cast<double>(solid) / count);
+      out[i].gradient = (gradient / count).template cast<float>();
+      out[i].pairGradient = (pairGradient / count).template cast<float>();
+    }
+  }
+
+ private:
+  struct Sample {
+    Vec3f offset;            ///< over the support radius
+    Vec3f slope, pairSlope;  ///< what it adds to h grad gamma, with the number of samples still to divide by
+  };
+
+  static float radiusOfMass(float mass) {
+    float low = 0, high = 1;
+    for (int step = 0; step < 30; ++step) {
+      const float middle = 0.5F * (low + high);
+      (RadialIntegrals<Kernel>::mass(middle) < mass ? low : high) = middle;
+    }
+    return 0.5F * (low + high);
+  }
+
+  const Boundary& boundary_;
+  float support_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace
+
+std::unique_ptr<GammaMethod> makeMonteCarloGamma(const GammaContext& context) {
+  return withKernel(context.kernel, [&](auto kernel) -> std::unique_ptr<GammaMethod> {
+    return std::make_unique<MonteCarloGamma<decltype(kernel)>>(context);
+  });
+}
+
+}  // namespace migiwa

@@ -1,0 +1,109 @@
+#include "core/boundary/sphere.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace migiwa {
+
+namespace {
+constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
+}
+
+Sphere::Sphere(const Vec3d& center, double radius, Fluid fluid)
+    : centerExact_(center), radiusExact_(radius), fluid_(fluid) {
+  prepare();
+}
+
+void Sphere::describe(FieldVisitor& visitor) {
+  visitor.choice("fluid", fluid_, kFluidNames,
+                 {"", "The side of the wall that holds the fluid.", Presence::required});
+  visitor.vector("center", centerExact_, {"m", "Centre.", Presence::required});
+  visitor.number("radius", radiusExact_, Range::positive(kLargestCoordinate),
+                 {"m", "Radius.", Presence::required});
+  prepare();
+}
+
+void Sphere::prepare() {
+  center_ = centerExact_.cast<float>();
+  radius_ = static_cast<float>(radiusExact_);
+}
+
+float Sphere::distance(const Vec3f& p, Vec3f& normal) const {
+  const Vec3f offset = p - center_;
+  const float length = offset.norm();
+  const Vec3f outward = length > 0 ? Vec3f(offset / length) : Vec3f(Vec3f::UnitY());
+  normal = fluid_ == Fluid::inside ? Vec3f(-outward) : outward;
+  return fluid_ == Fluid::inside ? radius_ - length : length - radius_;
+}
+
+bool Sphere::project(Vec3f& p, float margin) const {
+  Vec3f normal;
+  const float missing = margin - distance(p, normal);
+  if (missing <= 0) return false;
+  // Inside, the centre is as far as one can get: where the margin leaves no room it is midway.
+  const float room = fluid_ == Fluid::inside ? (p - center_).norm() : missing;
+  p += std::min(missing, room) * normal;
+  return true;
+}
+
+void Sphere::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
+  // |o + t w|^2 = R^2 with o relative to the centre. From inside the far root, from outside the near one,
+  // written so that neither cancels: their product is c, and -b +- root has no cancellation on the side that
+  // is asked for.
+  const Vec3f o = origin - center_;
+  const float length = o.norm();
+  const float c = (length - radius_) * (length + radius_);
+  const bool inside = fluid_ == Fluid::inside;
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const float b = o.x() * directions.x[k] + o.y() * directions.y[k] + o.z() * directions.z[k];
+    const float discriminant = b * b - c;
+    const float root = std::sqrt(std::max(discriminant, 0.0F));
+    float hit;
+    if (inside) {
+      hit = b > 0 ? -c / (b + root) : root - b;
+    } else {
+      hit = discriminant > 0 && b < 0 ? c / (root - b) : hits[k];
+    }
+    hits[k] = std::min(hits[k], std::max(hit, 0.0F));
+  }
+}
+
+void Sphere::exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const {
+  const Vec3f o = origin - center_;
+  const float length = o.norm();
+  const float c = (length - radius_) * (length + radius_);
+  for (std::size_t k = 0; k < exits.size(); ++k) {
+    const float b = o.x() * directions.x[k] + o.y() * directions.y[k] + o.z() * directions.z[k];
+    exits[k] = std::sqrt(std::max(b * b - c, 0.0F)) - b;
+  }
+}
+
+Bounds Sphere::bounds() const {
+  Bounds bounds;
+  bounds.include(centerExact_);
+  return bounds.grown(radiusExact_);
+}
+
+void Sphere::wireframe(const Bounds&, std::vector<LineSegment>& out) const {
+  // Three great circles and two small ones on each side of the equator.
+  constexpr int kSegments = 64;
+  const auto circle = [&](const Vec3d& center, const Vec3d& u, const Vec3d& v, double radius) {
+    Vec3d from = center + radius * u;
+    for (int k = 1; k <= kSegments; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kSegments;
+      const Vec3d to = center + radius * (std::cos(angle) * u + std::sin(angle) * v);
+      out.push_back({from.cast<float>(), to.cast<float>()});
+      from = to;
+    }
+  };
+  const Vec3d x = Vec3d::UnitX(), y = Vec3d::UnitY(), z = Vec3d::UnitZ();
+  circle(centerExact_, x, y, radiusExact_);
+  circle(centerExact_, z, y, radiusExact_);
+  for (const double latitude : {-60.0, -30.0, 0.0, 30.0, 60.0}) {
+    const double angle = latitude * std::numbers::pi / 180;
+    circle(centerExact_ + radiusExact_ * std::sin(angle) * y, x, z, radiusExact_ * std::cos(angle));
+  }
+}
+
+}  // namespace migiwa

@@ -1,0 +1,175 @@
+// gamma by quadrature in double, for the walls of the accuracy tests; shares nothing with the methods under
+// test. All for support 1: points and radii are in units of the support radius.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/sph/kernel_type.h"
+#include "tests/sph/quadrature.h"
+
+namespace migiwa::reference {
+
+/// The kernels as their papers write them.
+inline double kernel(KernelType type, double q) {
+  constexpr double pi = std::numbers::pi;
+  if (q >= 1) return 0;
+  switch (type) {
+    case KernelType::poly6:
+      return 315 / (64 * pi) * std::pow(1 - q * q, 3);
+    case KernelType::spiky:
+      return 15 / pi * std::pow(1 - q, 3);
+    case KernelType::cubicSpline:
+      return q <= 0.5 ? 8 / pi * (1 - 6 * q * q + 6 * q * q * q) : 16 / pi * std::pow(1 - q, 3);
+    case KernelType::wendlandC2:
+      return 21 / (2 * pi) * std::pow(1 - q, 4) * (1 + 4 * q);
+  }
+  return 0;
+}
+
+/// 4 pi integral_0^r W s^2 ds.
+inline double massWithin(KernelType type, double r) {
+  const auto shell = [&](double s) { return 4 * std::numbers::pi * s * s * kernel(type, s); };
+  r = std::min(r, 1.0);
+  if (r <= 0.5) return quadrature::integrate(0, r, 2, shell);
+  return quadrature::integrate(0, 0.5, 2, shell) + quadrature::integrate(0.5, r, 2, shell);
+}
+
+/// massWithin as a table, fine enough for 1e-9.
+class MassTable {
+ public:
+  explicit MassTable(KernelType type) {
+    for (int k = 0; k <= kCells; ++k) values_.push_back(massWithin(type, static_cast<double>(k) / kCells));
+  }
+  double operator()(double r) const {
+    if (r >= 1) return 1;
+    // Cubic Lagrange over the four nodes around r.
+    const double at = r * kCells;
+    const int first = std::clamp(static_cast<int>(at) - 1, 0, kCells - 3);
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      double weight = 1;
+      for (int j = 0; j < 4; ++j)
+        if (j != i) weight *= (at - (first + j)) / (i - j);
+      sum += weight * values_[static_cast<std::size_t>(first + i)];
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr int kCells = 1024;
+  std::vector<double> values_;
+};
+
+/// Any walls: the kernel's mass in the fluid along each direction, averaged over all directions by a rule in
+/// z and in the angle about z with so many panels each. Edges seen from the point limit it to about
+/// 1/panels^2.
+template <class FluidMass>
+double overDirections(const FluidMass& fluidMass, int panels) {
+  const double sum = quadrature::integrate(-1, 1, panels, [&](double z) {
+    const double across = std::sqrt(1 - z * z);
+    return quadrature::integrate(0, 2 * std::numbers::pi, panels, [&](double angle) {
+      return fluidMass(Vec3d(across * std::cos(angle), across * std::sin(angle), z));
+    });
+  });
+  return sum / (4 * std::numbers::pi);
+}
+
+/// Inside all of some planes n.x + c >= 0 (concave) for a point at the origin.
+struct PlaneAt {
+  Vec3d normal;
+  double distance;
+};
+inline double hitOf(const PlaneAt& plane, const Vec3d& w) {
+  const double towards = -plane.normal.dot(w);
+  return towards > 0 ? plane.distance / towards : std::numeric_limits<double>::infinity();
+}
+
+/// A wedge whose edge runs along z: the kernel's mass over the plane across the edge, ray by ray, with panels
+/// that end where the nearer wall changes. `concave`: the fluid is inside both planes, else inside either.
+class Wedge {
+ public:
+  explicit Wedge(KernelType type) {
+    // Mass of the kernel within a cylinder of radius r about z, per angle: integral of s * (line integral)
+    // ds.
+    const auto line = [&](double s) {
+      const double top = std::sqrt(std::max(1 - s * s, 0.0));
+      const auto along = [&](double z) { return 2 * kernel(type, std::sqrt(s * s + z * z)); };
+      const double knee = std::sqrt(std::max(0.25 - s * s, 0.0));
+      return quadrature::integrate(0, knee, 1, along) + quadrature::integrate(knee, top, 2, along);
+    };
+    values_.push_back(0);
+    for (int k = 1; k <= kCells; ++k)
+      values_.push_back(values_.back() + quadrature::integrate((k - 1.0) / kCells,
+                                                               static_cast<double>(k) / kCells, 1,
+                                                               [&](double s) { return s * line(s); }));
+  }
+
+  double gamma(const Vec3d& firstNormal, double firstDistance, const Vec3d& secondNormal,
+               double secondDistance, bool concave) const {
+    const auto fluid = [&](double angle) {
+      const Vec3d w(std::cos(angle), std::sin(angle), 0);
+      if (concave)
+        return mass(
+            std::min(hitOf({firstNormal, firstDistance}, w), hitOf({secondNormal, secondDistance}, w)));
+      // In the solid while behind both planes: from the later entry to the earlier exit.
+      double enter = 0, leave = 1;
+      for (const PlaneAt& plane :
+           {PlaneAt{firstNormal, firstDistance}, PlaneAt{secondNormal, secondDistance}}) {
+        const double towards = -plane.normal.dot(w);
+        const double crossing = towards != 0 ? plane.distance / towards : 2;
+        if (towards > 0) {
+          enter = std::max(enter, crossing);
+        } else if (plane.distance < 0) {
+          leave = std::min(leave, crossing);
+        } else {
+          enter = 1;  // in front of the plane, and moving away
+        }
+      }
+      return mass(1) - std::max(mass(leave) - mass(std::min(enter, 1.0)), 0.0);
+    };
+    // The integrand has kinks; many panels and the high order between them give 1e-7.
+    return quadrature::integrate(0, 2 * std::numbers::pi, 400, fluid);
+  }
+
+ private:
+  double mass(double r) const {
+    const double at = std::min(r, 1.0) * kCells;
+    const int first = std::clamp(static_cast<int>(at) - 1, 0, kCells - 3);
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      double weight = 1;
+      for (int j = 0; j < 4; ++j)
+        if (j != i) weight *= (at - (first + j)) / (i - j);
+      sum += weight * values_[static_cast<std::size_t>(first + i)];
+    }
+    return sum;
+  }
+
+  static constexpr int kCells = 512;
+  std::vector<double> values_;
+};
+
+/// At distance `offset` from the centre of a sphere of radius R: the part of the kernel inside the sphere,
+/// exactly, from the spherical caps that it cuts from the shells.
+inline double insideSphere(KernelType type, double offset, double R) {
+  const auto shell = [&](double r) {
+    const double cosine = (R * R - offset * offset - r * r) / (2 * offset * r);
+    const double part = offset < 1e-12 ? (r < R ? 1.0 : 0.0) : std::clamp(0.5 * (1 + cosine), 0.0, 1.0);
+    return 4 * std::numbers::pi * r * r * kernel(type, r) * part;
+  };
+  // Panels end where the shell first and last meets the sphere, and at the spline's knot.
+  std::vector<double> ends{0, 0.5, 1};
+  for (const double r : {std::abs(R - offset), R + offset})
+    if (r < 1) ends.push_back(r);
+  std::sort(ends.begin(), ends.end());
+  double sum = 0;
+  for (std::size_t k = 1; k < ends.size(); ++k) sum += quadrature::integrate(ends[k - 1], ends[k], 2, shell);
+  return sum;
+}
+
+}  // namespace migiwa::reference
