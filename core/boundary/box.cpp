@@ -16,13 +16,16 @@ Box::Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotati
 }
 
 void Box::describe(FieldVisitor& visitor) {
-  visitor.choice("fluid", fluid_, kFluidNames, {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("min", min_, {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", max_, {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+  visitor.choice("fluid", fluid_, kFluidNames,
+                 {"", "The side of the wall that holds the fluid.", Presence::required});
+  visitor.vector("min", min_,
+                 {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+  visitor.vector("max", max_,
+                 {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
                  [this](FieldVisitor& fields) { rotation_.describe(fields); });
-  if ((max_.array() <= min_.array()).any()) {
-    visitor.fault("max", "expected every coordinate to be larger than that of min");
+  if (visitor.sound({"min", "max"}) && (max_.array() <= min_.array()).any()) {
+    visitor.fault("max", "expected every coordinate to be larger than that of min, found one that is not");
   } else {
     prepare();
   }

@@ -1,4 +1,5 @@
-// A box wall, upright or turned about its centre: a tank with the fluid inside, or a block with the fluid outside.
+// A box wall, upright or turned about its centre: a tank with the fluid inside, or a block with the fluid
+// outside.
 #pragma once
 
 #include "core/base/rotation.h"

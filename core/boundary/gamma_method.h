@@ -1,5 +1,6 @@
-// gamma_i of [FM] Eq. 6: the part of the kernel's support that the solid does not cover, with its gradient, for a
-// batch of points. A method is one file that implements this interface and one line in gamma_registry.cpp.
+// gamma_i of [FM] Eq. 6: the part of the kernel's support that the solid does not cover, with its gradient,
+// for a batch of points. A method is one file that implements this interface and one line in
+// gamma_registry.cpp.
 #pragma once
 
 #include <memory>
@@ -14,13 +15,13 @@
 
 namespace migiwa {
 
-/// gamma at one point. Gradients are those of gamma with respect to the point over the support radius, so without a
-/// unit: multiply by 1/h for 1/m.
+/// gamma at one point. Gradients are those of gamma with respect to the point over the support radius, so
+/// without a unit: multiply by 1/h for 1/m.
 struct GammaSample {
   float gamma = 1;
-  float distance = 0;                     ///< to the nearest wall (m), positive in the fluid
-  Vec3f gradient = Vec3f::Zero();         ///< h grad gamma for the density kernel
-  Vec3f pairGradient = Vec3f::Zero();     ///< the same for the kernel of the pair gradients: the wall's push
+  float distance = 0;                  ///< to the nearest wall (m), positive in the fluid
+  Vec3f gradient = Vec3f::Zero();      ///< h grad gamma for the density kernel
+  Vec3f pairGradient = Vec3f::Zero();  ///< the same for the kernel of the pair gradients: the wall's push
 };
 
 class GammaMethod {

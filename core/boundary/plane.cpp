@@ -1,12 +1,15 @@
 #include "core/boundary/plane.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace migiwa {
 
-Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(normal) { prepare(); }
+Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(normal) {
+  prepare();
+}
 
 void Plane::describe(FieldVisitor& visitor) {
   visitor.vector("point", point_, {"m", "A point of the wall.", Presence::required});
@@ -51,8 +54,10 @@ void Plane::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const 
   constexpr int kCells = 4;
   for (int k = 0; k <= kCells; ++k) {
     const double at = half * (2.0 * k / kCells - 1);
-    out.push_back({(center + at * across - half * along).cast<float>(), (center + at * across + half * along).cast<float>()});
-    out.push_back({(center + at * along - half * across).cast<float>(), (center + at * along + half * across).cast<float>()});
+    out.push_back({(center + at * across - half * along).cast<float>(),
+                   (center + at * across + half * along).cast<float>()});
+    out.push_back({(center + at * along - half * across).cast<float>(),
+                   (center + at * along + half * across).cast<float>()});
   }
 }
 

@@ -1,5 +1,6 @@
-// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and one line
-// in surface_registry.cpp. Distances are metres, positive in the fluid; normals are unit vectors into the fluid.
+// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and
+// one line in surface_registry.cpp. Distances are metres, positive in the fluid; normals are unit vectors
+// into the fluid.
 #pragma once
 
 #include <memory>
@@ -47,14 +48,15 @@ class Surface {
   /// Signed distance of p, and the unit normal at the nearest point of the wall.
   virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
 
-  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where two of its
-  /// walls leave no room. Returns whether p moved.
+  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where
+  /// two of its walls leave no room. Returns whether p moved.
   virtual bool project(Vec3f& p, float margin) const = 0;
 
   /// Appends other points at `margin` that p could be moved to, for where other walls bar the shortest way.
   virtual void otherWaysOut(const Vec3f&, float /*margin*/, std::vector<Vec3f>&) const {}
 
-  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of reach.
+  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of
+  /// reach.
   virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const = 0;
   virtual PieceRule pieceRule() const = 0;
 

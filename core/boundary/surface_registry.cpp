@@ -33,6 +33,8 @@ std::span<const std::string_view> surfaceShapes() {
   return names;
 }
 
-std::unique_ptr<Surface> makeSurface(int shape) { return kShapes.at(static_cast<std::size_t>(shape)).make(); }
+std::unique_ptr<Surface> makeSurface(int shape) {
+  return kShapes.at(static_cast<std::size_t>(shape)).make();
+}
 
 }  // namespace migiwa

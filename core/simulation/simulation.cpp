@@ -62,15 +62,17 @@ void Simulation::State::configure() {
   limits = healthLimits(scene);
 }
 
-Simulation::Simulation(Scene scene, int threads) : state_(std::make_unique<State>(std::move(scene), threads)) {
+Simulation::Simulation(Scene scene, int threads)
+    : state_(std::make_unique<State>(std::move(scene), threads)) {
   State& state = *state_;
   fillScene(state.scene, state.boundary, state.step.particles);
   for (const NamedEffect& effect : state.scene.effects) state.effects.push_back({effect.name, effect.effect});
   state.configure();
   if (const long inside = stabilise(state.step); inside > 0) {
     state.statistics.note("started_in_wall", 0,
-                          std::to_string(inside) + " particles began nearer than half a spacing to a wall or beyond "
-                                                   "it; they were moved out without gaining speed");
+                          std::to_string(inside) +
+                              " particles began nearer than half a spacing to a wall or beyond "
+                              "it; they were moved out without gaining speed");
   } else {
     prepareFields(state.step);
   }
@@ -140,10 +142,16 @@ void Simulation::advanceFrame() {
 long Simulation::frameAt(double time) const {
   return std::lround(time / state_->scene.solver.timeStep);
 }
-long Simulation::frame() const { return state_->frame; }
-double Simulation::time() const { return state_->time; }
+long Simulation::frame() const {
+  return state_->frame;
+}
+double Simulation::time() const {
+  return state_->time;
+}
 
-Settings Simulation::settings() const { return {state_->scene.solver, state_->scene.boundary}; }
+Settings Simulation::settings() const {
+  return {state_->scene.solver, state_->scene.boundary};
+}
 
 void Simulation::apply(const Settings& settings) {
   state_->scene.solver = settings.solver;
@@ -151,12 +159,14 @@ void Simulation::apply(const Settings& settings) {
   state_->configure();
 }
 
-const Scene& Simulation::scene() const { return state_->scene; }
+const Scene& Simulation::scene() const {
+  return state_->scene;
+}
 
 FrameView Simulation::view() const {
   const StepState& step = state_->step;
-  return {state_->info, step.particles.position, step.particles.velocity, step.density,
-          step.gamma,   step.lambda,             step.neighbours.counts()};
+  return {state_->info, step.particles.position, step.particles.velocity, step.density, step.gamma,
+          step.lambda,  step.neighbours.counts()};
 }
 
 std::uint64_t Simulation::stateHash() const {
@@ -164,9 +174,15 @@ std::uint64_t Simulation::stateHash() const {
   return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, state_->pool);
 }
 
-const RunStatistics& Simulation::statistics() const { return state_->statistics; }
-int Simulation::threads() const { return state_->pool.threads(); }
-bool Simulation::stopped() const { return state_->statistics.failed(); }
+const RunStatistics& Simulation::statistics() const {
+  return state_->statistics;
+}
+int Simulation::threads() const {
+  return state_->pool.threads();
+}
+bool Simulation::stopped() const {
+  return state_->statistics.failed();
+}
 
 std::vector<LineSegment> Simulation::wireframe() const {
   std::vector<LineSegment> lines;

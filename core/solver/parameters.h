@@ -9,7 +9,8 @@
 
 namespace migiwa {
 
-/// How lambda becomes a displacement. METHOD: [FM] Eq. 10 is the short form of the constraint's gradient step.
+/// How lambda becomes a displacement. METHOD: [FM] Eq. 10 is the short form of the constraint's gradient
+/// step.
 enum class PositionStep {
   gradient,      ///< the true gradient of the corrected constraint: lambda/gamma pairs and the wall's push
   pairsAndWall,  ///< Eq. 10's (lambda_i + lambda_j) pairs and the wall's push
@@ -25,13 +26,13 @@ enum class BoundaryHandling {
 inline constexpr std::array<std::string_view, 2> kHandlingNames{"gamma", "none"};
 
 struct SolverParameters {
-  double timeStep = 0.005;    ///< a frame's step (unit: s, range: (0, 1])
-  int substeps = 1;           ///< parts that a frame has at least (range: [1, 1000])
-  double cfl = 0.4;           ///< support radii that the fastest particle may move in a substep; 0: no limit (unit: 1)
-  int minIterations = 2;      ///< (range: [1, 1000])
-  int maxIterations = 20;     ///< (range: [1, 1000], at least minIterations)
-  double tolerance = 0.01;    ///< largest mean density error that ends the iterations (unit: 1, range: [0, 1))
-  double cfmEpsilon = 1;      ///< Eq. 11's epsilon over the resting lattice's sum of squared gradients (unit: 1)
+  double timeStep = 0.005;  ///< a frame's step (unit: s, range: (0, 1])
+  int substeps = 1;         ///< parts that a frame has at least (range: [1, 1000])
+  double cfl = 0.4;  ///< support radii that the fastest particle may move in a substep; 0: no limit (unit: 1)
+  int minIterations = 2;    ///< (range: [1, 1000])
+  int maxIterations = 20;   ///< (range: [1, 1000], at least minIterations)
+  double tolerance = 0.01;  ///< largest mean density error that ends the iterations (unit: 1, range: [0, 1))
+  double cfmEpsilon = 1;  ///< Eq. 11's epsilon over the resting lattice's sum of squared gradients (unit: 1)
   double supportRatio = 2;    ///< support radius over particle spacing (unit: 1, range: [1.2, 4])
   double restDensity = 1000;  ///< (unit: kg/m^3)
   KernelType kernel = KernelType::poly6;

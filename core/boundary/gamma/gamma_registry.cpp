@@ -37,8 +37,8 @@ std::span<const std::string_view> gammaMethodNames() {
 
 PickedGamma makeGammaMethod(int index, const GammaContext& context) {
   if (index > 0) return make(static_cast<std::size_t>(index - 1), context, {});
-  // All shapes so far are made of planes. The product is exact on one, the closest at right angles, and errs less
-  // than the others at any other angle.
+  // All shapes so far are made of planes. The product is exact on one, the closest at right angles, and errs
+  // less than the others at any other angle.
   return make(kProduct, context, "all walls are planar; the product is the most accurate method for planes");
 }
 

@@ -1,6 +1,6 @@
-// [FM] Eq. 14: gamma is the mean of the pieces' own gammas, weighted by a Gaussian of the distance to the node's centre.
-// Pieces without a node have their foot point as centre; those nearer than h count, sigma = h/2.
-// Off by up to 1/4 at a right-angled edge whatever the weights: the error of the paper's Figure 3.
+// [FM] Eq. 14: gamma is the mean of the pieces' own gammas, weighted by a Gaussian of the distance to the
+// node's centre. Pieces without a node have their foot point as centre; those nearer than h count, sigma =
+// h/2. Off by up to 1/4 at a right-angled edge whatever the weights: the error of the paper's Figure 3.
 #include <cmath>
 
 #include "core/boundary/gamma/gamma_methods.h"
@@ -14,7 +14,8 @@ namespace {
 template <class Kernel>
 class MeanGamma final : public GammaMethod {
  public:
-  explicit MeanGamma(const GammaContext& context) : boundary_(context.boundary), support_(context.supportRadius) {}
+  explicit MeanGamma(const GammaContext& context)
+      : boundary_(context.boundary), support_(context.supportRadius) {}
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     WallPieces pieces;
@@ -30,7 +31,8 @@ class MeanGamma final : public GammaMethod {
       // gamma = S / w, so grad gamma = (grad S - gamma grad w) / w.
       out[i].gamma = sums.gamma / sums.weight;
       out[i].gradient = (sums.gradient - out[i].gamma * sums.weightGradient) / sums.weight;
-      out[i].pairGradient = (sums.pairGradient - sums.pairGamma / sums.weight * sums.weightGradient) / sums.weight;
+      out[i].pairGradient =
+          (sums.pairGradient - sums.pairGamma / sums.weight * sums.weightGradient) / sums.weight;
     }
   }
 

@@ -1,5 +1,5 @@
-// gamma as the product over planes at right angles. Exact for one plane and for parallel planes; within 0.004 on a
-// right-angled edge and 0.008 in a corner for Poly6, which is nearly a Gaussian and so nearly separates.
+// gamma as the product over planes at right angles. Exact for one plane and for parallel planes; within 0.004
+// on a right-angled edge and 0.008 in a corner for Poly6, which is nearly a Gaussian and so nearly separates.
 // Along one axis, the parts that two parallel planes take away add up; a block's parts multiply to its solid.
 #include "core/boundary/gamma/gamma_methods.h"
 #include "core/boundary/gamma/wall_pieces.h"
@@ -22,11 +22,13 @@ class ProductOverPlanes {
 
   /// The part on the fluid side of all planes.
   Part fluidInsideAll(std::span<const WallPiece> pieces) const {
-    return multiply(pieces, [](float gamma) { return 1 - gamma; }, true);
+    return multiply(
+        pieces, [](float gamma) { return 1 - gamma; }, true);
   }
   /// The part on the solid side of all planes.
   Part solidInsideAll(std::span<const WallPiece> pieces) const {
-    return multiply(pieces, [](float gamma) { return gamma; }, false);
+    return multiply(
+        pieces, [](float gamma) { return gamma; }, false);
   }
 
  private:

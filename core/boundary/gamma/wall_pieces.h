@@ -1,5 +1,5 @@
-// The planar pieces in reach of a point, sorted by how they combine: those of all concave surfaces bound the fluid
-// together, those of each convex solid bound that solid.
+// The planar pieces in reach of a point, sorted by how they combine: those of all concave surfaces bound the
+// fluid together, those of each convex solid bound that solid.
 #pragma once
 
 #include <span>
