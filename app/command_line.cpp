@@ -68,6 +68,7 @@ void requireCommand(const std::vector<std::string>& arguments, const std::vector
   const std::string& first = arguments.front();
   if (first == "--help" || first == "-h") return;
   std::vector<std::string_view> names;
+  names.reserve(commands.size());
   for (const Command& command : commands) names.push_back(command.name);
   if (std::find(names.begin(), names.end(), first) != names.end()) return;
   std::string message = "expected a command first (" + quotedList(names) + "), found \"" + first + "\"";

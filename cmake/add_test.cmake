@@ -23,7 +23,7 @@ function(migiwa_add_test name)
 
   # Labels are set by a file of our own that ctest reads after the discovery's: on its way through the discovery a list
   # of several labels would fall apart.
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_TYPES
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
     TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT})
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   file(WRITE ${labels_file}

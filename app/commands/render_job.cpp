@@ -70,13 +70,15 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
   if (options.compare.empty()) {
     addVariant(common.overrides, "");
   } else {
-    collect([&] {
-      for (const Override& change : parseVariants(options.compare, "--compare")) {
-        std::vector<Override> overrides = common.overrides;
-        overrides.push_back(change);
-        addVariant(overrides, note(change));
-      }
-    });
+    std::vector<Override> changes;
+    collect([&] { changes = parseVariants(options.compare, "--compare"); });
+    for (const Override& change : changes) {
+      std::vector<Override> overrides = common.overrides;
+      overrides.push_back(change);
+      addVariant(overrides, note(change));
+    }
+    // Not even the option could be read: then the scene itself is still to be looked at.
+    if (changes.empty()) addVariant(common.overrides, "");
   }
   if (!faults.empty()) throw InputError(std::move(faults));
 

@@ -61,8 +61,6 @@ void savePicture(const Image& image) {
 int view(const ViewOptions& options, const CommonOptions& common) {
   const Scene scene =
       readScene(options.scene.empty() ? defaultScene() : fs::path(options.scene), common.overrides);
-  for (const std::string& warning : scene.warnings)
-    std::cerr << scene.file.string() << ": warning: " << warning << '\n';
   runWindow(scene, {common.threads, !options.paused, options.frames, savePicture});
   return kDone;
 }
@@ -83,7 +81,8 @@ Command viewCommand() {
             "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
             "Keys: space plays and pauses, right arrow steps, R resets, C corrects or not, H hides the "
             "panels,\n"
-            "P saves a picture here as migiwa_0001.png and so on.");
+            "P saves a picture here as migiwa_0001.png and so on.\n"
+            "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there.");
         return [options](const CommonOptions& common) { return view(*options, common); };
       }};
 }

@@ -8,9 +8,15 @@
 
 namespace migiwa {
 
+Vec3d cameraRight(const Camera& camera) {
+  const Vec3d back = (camera.eye - camera.target).normalized();
+  const Vec3d right = camera.up.normalized().cross(back);
+  return right.norm() > 1e-6 ? right.normalized() : back.unitOrthogonal();
+}
+
 Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene) {
   const Vec3d back = (camera.eye - camera.target).normalized();
-  const Vec3d right = camera.up.cross(back).normalized();
+  const Vec3d right = cameraRight(camera);
   const Vec3d up = back.cross(right);
   Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
   view.block<1, 3>(0, 0) = right.transpose();

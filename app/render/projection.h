@@ -18,6 +18,9 @@ struct Projection {
   double near = 0, far = 0;        ///< distances of the depth range's ends (m)
 };
 
+/// To the right in the picture; any direction across the line of sight where that runs along the up axis.
+Vec3d cameraRight(const Camera& camera);
+
 /// The camera's vertical field of view holds for the whole picture. Where panels leave only `scene` of it,
 /// everything is drawn smaller, so that it still shows what the whole picture would.
 Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene);

@@ -62,7 +62,8 @@ void Renderer::collectSpheres(const FrameView& frame, const Shot& shot) {
     const Vec3f p = frame.positions[i].xyz();
     if (!p.allFinite()) continue;
     if (shot.clip.enabled && side * (p[static_cast<Eigen::Index>(shot.clip.axis)] - at) > 0) continue;
-    spheres_.emplace_back(p, std::clamp((values_[i] - low) * scale, 0.0F, 1.0F));
+    const float value = (values_[i] - low) * scale;
+    spheres_.emplace_back(p, value > 0 ? std::min(value, 1.0F) : 0.0F);  // 0 for what is not a number, too
   }
 }
 

@@ -78,7 +78,7 @@ struct Ui::State {
 };
 
 Ui::Ui(double scale) : state_(std::make_unique<State>()) {
-  state_->pixels = std::round(kFontPixels * static_cast<float>(scale));
+  state_->pixels = std::floor(kFontPixels * static_cast<float>(scale) + 0.25F);
   state_->fonts = loadFonts(state_->pixels);
   applyTheme(state_->pixels);
   ImGuiIO& io = ImGui::GetIO();
@@ -118,7 +118,7 @@ void Ui::panels(PanelModel& model, int height) {
   section("Boundary", true, bold, model, boundaryPanel);
   section("Solver", lines > 26, bold, model, solverPanel);
   section("View", lines > 33, bold, model, viewPanel);
-  section("Performance", lines > 47, bold, model, performancePanel);
+  section("Performance", lines > 46, bold, model, performancePanel);
   ImGui::End();
 }
 

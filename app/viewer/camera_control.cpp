@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "app/render/projection.h"
+
 namespace migiwa {
 namespace {
 
@@ -16,19 +18,16 @@ constexpr double kPole = 0.03;  ///< how near the view may come to the up axis
 
 void orbit(Camera& camera, double right, double up) {
   const Vec3d axis = camera.up.normalized();
-  Vec3d arm = Eigen::AngleAxisd(-right, axis) * (camera.eye - camera.target);
+  const Vec3d arm = Eigen::AngleAxisd(-right, axis) * (camera.eye - camera.target);
   const double polar = std::acos(std::clamp(arm.normalized().dot(axis), -1.0, 1.0));
-  const Vec3d side = axis.cross(arm);
-  if (side.norm() > 0) {
-    const double wanted = std::clamp(polar - up, kPole, std::numbers::pi - kPole);
-    arm = Eigen::AngleAxisd(wanted - polar, side.normalized()) * arm;
-  }
+  const double wanted = std::clamp(polar - up, kPole, std::numbers::pi - kPole);
   camera.eye = camera.target + arm;
+  camera.eye = camera.target + Eigen::AngleAxisd(wanted - polar, cameraRight(camera)) * arm;
 }
 
 void pan(Camera& camera, double right, double up) {
   const Vec3d back = (camera.eye - camera.target).normalized();
-  const Vec3d side = camera.up.cross(back).normalized();
+  const Vec3d side = cameraRight(camera);
   const Vec3d shift = -right * side - up * back.cross(side);
   camera.eye += shift;
   camera.target += shift;

@@ -17,11 +17,11 @@ std::string describe(const RunStatistics& statistics) {
 }  // namespace
 
 SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
-    : scene_(scene),
-      threads_(threads),
+    : threads_(threads),
       pace_(pace),
-      simulation_(std::make_unique<Simulation>(scene, threads)) {
-  walls_ = simulation_->wireframe();
+      simulation_(std::make_unique<Simulation>(scene, threads)),
+      scene_(simulation_->scene()),
+      walls_(simulation_->wireframe()) {
   finished_.assign(simulation_->view());
   hasFrame_ = true;
   thread_ = std::thread([this] { work(); });

@@ -38,6 +38,8 @@ class SimulationThread {
   /// Swaps the newest frame into `frame` if there is one that was not taken yet.
   bool takeFrame(FrameSnapshot& frame);
   RunStatus status() const;
+  /// The scene as it was filled, with the warnings of that.
+  const Scene& scene() const { return scene_; }
   /// Walls for drawing.
   const std::vector<LineSegment>& walls() const { return walls_; }
 
@@ -50,15 +52,15 @@ class SimulationThread {
   void advance(std::unique_lock<std::mutex>& lock);
   void publish(std::unique_lock<std::mutex>& lock);
 
-  const Scene scene_;
   const int threads_;
   const Pace pace_;
-  std::vector<LineSegment> walls_;
-
   // Of the simulation's thread alone, once it runs.
   std::unique_ptr<Simulation> simulation_;
   FrameSnapshot filling_;
   Clock::time_point due_{};
+
+  const Scene scene_;
+  const std::vector<LineSegment> walls_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -40,7 +40,10 @@ Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerO
       settings_{scene.solver, scene.boundary},
       view_{scene.view.camera, scene.view.clip, scene.view.color, true, options.panels},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
-      ui_(options.scale) {}
+      ui_(options.scale) {
+  // A cut that is switched on later begins in the middle.
+  if (!view_.clip.enabled) view_.clip.at = bounds_.center()[static_cast<Eigen::Index>(view_.clip.axis)];
+}
 
 Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
                      int height) {
@@ -79,7 +82,7 @@ Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width
 
 Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {
   Wishes wishes;
-  ui_.caption(caption(frame), area);
+  ui_.caption(caption(frame, run), area);
   ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
   if (view_.panels) {
     PanelModel model{frame.info, run, options_.timings, scene_, bounds_, settings_, view_, wishes};
@@ -88,7 +91,7 @@ Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& 
   return wishes;
 }
 
-Caption Viewer::caption(const FrameView& frame) const {
+Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
   const FrameInfo& info = frame.info;
   Caption caption{scene_.name.empty() ? scene_.stem() : scene_.name,
                   {{"time", formatNumber("%.3f s", info.time)},
@@ -97,6 +100,7 @@ Caption Viewer::caption(const FrameView& frame) const {
                    {"iterations", std::to_string(info.iterations)},
                    {"ms per step", milliseconds(info.stepSeconds, options_.timings)},
                    {"grid", formatNumber("%g m", renderer_.ground().gridSpacing)}}};
+  if (run.stopped) caption.rows.emplace_back("state", "stopped");
   const std::size_t equals = options_.note.find(" = ");
   if (equals != std::string::npos) {
     caption.rows.emplace_back(options_.note.substr(0, equals), options_.note.substr(equals + 3));

@@ -47,7 +47,7 @@ class Viewer {
   void moveCamera(const InputState& input, const Rect& area);
   void keys(const InputState& input, const RunStatus& run, Wishes& wishes);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
-  Caption caption(const FrameView& frame) const;
+  Caption caption(const FrameView& frame, const RunStatus& run) const;
 
   Scene scene_;
   ViewerOptions options_;

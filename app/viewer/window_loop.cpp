@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <future>
+#include <iostream>
 
 #include "app/platform/glfw_window.h"
 #include "app/viewer/simulation_thread.h"
@@ -32,7 +33,10 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
   const std::string name = scene.name.empty() ? scene.stem() : scene.name;
   GlfwWindow window(name + " - Migiwa", kWidth, kHeight);
   SimulationThread simulation(scene, options.threads, Pace::realTime);
-  Viewer viewer(scene, simulation.walls(), {.scale = window.contentScale()});
+  for (const std::string& warning : simulation.scene().warnings) {
+    std::cerr << scene.file.string() << ": warning: " << warning << '\n';
+  }
+  Viewer viewer(simulation.scene(), simulation.walls(), {.scale = window.contentScale()});
   if (options.playing) simulation.play();
 
   FrameSnapshot frame;

@@ -16,7 +16,9 @@ struct Bounds {
   void include(const Bounds& other) { min = min.cwiseMin(other.min), max = max.cwiseMax(other.max); }
   Vec3d center() const { return 0.5 * (min + max); }
   Vec3d size() const { return empty() ? Vec3d(Vec3d::Zero()) : Vec3d(max - min); }
-  bool contains(const Vec3d& p) const { return (p.array() >= min.array()).all() && (p.array() <= max.array()).all(); }
+  bool contains(const Vec3d& p) const {
+    return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
+  }
   Bounds grown(double by) const {
     Bounds result = *this;
     result.min.array() -= by;

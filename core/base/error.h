@@ -18,7 +18,8 @@ struct Fault {
 /// What the user gave is wrong. Carries every fault found, not only the first. Exit code 2.
 class InputError : public std::runtime_error {
  public:
-  explicit InputError(std::vector<Fault> faults) : std::runtime_error(join(faults)), faults_(std::move(faults)) {}
+  explicit InputError(std::vector<Fault> faults)
+      : std::runtime_error(join(faults)), faults_(std::move(faults)) {}
   InputError(std::string place, std::string message)
       : InputError(std::vector<Fault>{{std::move(place), std::move(message)}}) {}
   const std::vector<Fault>& faults() const { return faults_; }
@@ -28,7 +29,8 @@ class InputError : public std::runtime_error {
   std::vector<Fault> faults_;
 };
 
-/// Something that this machine lacks: a display, an EGL device. The message says what to install. Exit code 4.
+/// Something that this machine lacks: a display, an EGL device. The message says what to install. Exit
+/// code 4.
 class MissingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

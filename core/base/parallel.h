@@ -1,7 +1,7 @@
-// Parallel loops over fixed chunks. The chunks do not depend on the number of threads and every chunk is worked on
-// by one thread, so a result put together from per-chunk results in chunk order is the same for any number of threads.
-// Waiting threads sleep: on a busy machine a spinning pool loses a scheduler slice in every region. Written with
-// standard primitives only, so that the thread sanitizer sees all of it.
+// Parallel loops over fixed chunks. The chunks do not depend on the number of threads and every chunk is
+// worked on by one thread, so a result put together from per-chunk results in chunk order is the same for any
+// number of threads. Waiting threads sleep: on a busy machine a spinning pool loses a scheduler slice in
+// every region. Written with standard primitives only, so that the thread sanitizer sees all of it.
 #pragma once
 
 #include <condition_variable>
@@ -47,7 +47,9 @@ class ThreadPool {
 /// Particles a chunk: small enough to balance, large enough that taking one costs nothing.
 inline constexpr std::size_t kChunk = 512;
 
-inline std::size_t chunkCount(std::size_t n) { return (n + kChunk - 1) / kChunk; }
+inline std::size_t chunkCount(std::size_t n) {
+  return (n + kChunk - 1) / kChunk;
+}
 
 /// Calls body(begin, end, chunk) for every chunk of [0, n).
 template <class Body>
@@ -62,7 +64,9 @@ void parallelFor(ThreadPool& pool, std::size_t n, const Body& body) {
 template <class T, class Body, class Fold>
 T parallelReduce(ThreadPool& pool, std::size_t n, T initial, const Body& body, const Fold& fold) {
   std::vector<T> parts(chunkCount(n), initial);
-  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) { parts[chunk] = body(begin, end); });
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    parts[chunk] = body(begin, end);
+  });
   T total = initial;
   for (const T& part : parts) total = fold(total, part);
   return total;

@@ -1,8 +1,9 @@
 // A turn about an axis through something's centre, as scenes write it.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "core/base/fields.h"
 #include "core/base/types.h"

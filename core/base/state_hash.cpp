@@ -15,7 +15,8 @@ std::uint64_t mix(std::uint64_t v) {
 }
 
 std::uint64_t bits(float low, float high) {
-  return std::bit_cast<std::uint32_t>(low) | static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(high)) << 32;
+  return std::bit_cast<std::uint32_t>(low) | static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(high))
+                                                 << 32;
 }
 
 }  // namespace

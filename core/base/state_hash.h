@@ -1,5 +1,5 @@
-// A hash of what a simulation's future depends on. It sums over particles, so neither their order nor the number of
-// threads matters; one changed bit changes it.
+// A hash of what a simulation's future depends on. It sums over particles, so neither their order nor the
+// number of threads matters; one changed bit changes it.
 #pragma once
 
 #include <cstdint>

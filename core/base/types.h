@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <Eigen/Core>
 
 namespace migiwa {
@@ -9,7 +10,8 @@ namespace migiwa {
 using Vec3f = Eigen::Vector3f;
 using Vec3d = Eigen::Vector3d;
 
-/// Three coordinates and one spare lane, loaded by one instruction. What the lane holds is said where it is used.
+/// Three coordinates and one spare lane, loaded by one instruction. What the lane holds is said where it is
+/// used.
 struct alignas(16) Float4 {
   float x = 0, y = 0, z = 0, w = 0;
 

@@ -25,8 +25,8 @@ float Boundary::distance(const Vec3f& p) const {
 }
 
 bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
-  // Each surface in turn until none moves the point. Where surfaces leave no room the point swings between them, and
-  // the mean of the last swing lies midway.
+  // Each surface in turn until none moves the point. Where surfaces leave no room the point swings between
+  // them, and the mean of the last swing lies midway.
   constexpr int kRounds = 16;
   const Vec3f start = p;
   const float rounding = 1e-4F * margin;
@@ -61,7 +61,8 @@ bool Boundary::project(Vec3f& p, float margin) const {
   const bool moved = projectInTurn(p, margin, fits);
   if (fits) return moved;
 
-  // The shortest way out of one wall leads into another: take the shortest of the other ways that end in the fluid.
+  // The shortest way out of one wall leads into another: take the shortest of the other ways that end in the
+  // fluid.
   std::vector<Vec3f> ways;
   for (const auto& surface : surfaces_) surface->otherWaysOut(start, margin, ways);
   float best = std::numeric_limits<float>::infinity();

@@ -20,7 +20,8 @@ class Boundary {
   float distance(const Vec3f& p, Vec3f& normal) const;
   float distance(const Vec3f& p) const;
 
-  /// Moves p until every wall is at least `margin` (m) away, or midway where walls leave no room. Returns whether it moved.
+  /// Moves p until every wall is at least `margin` (m) away, or midway where walls leave no room. Returns
+  /// whether it moved.
   bool project(Vec3f& p, float margin) const;
 
  private:

@@ -1,5 +1,5 @@
-// One physical effect beyond pressure and gravity. An effect is one file that implements this interface and one line
-// in effect_registry.cpp. A scene that does not name it does not run it.
+// One physical effect beyond pressure and gravity. An effect is one file that implements this interface and
+// one line in effect_registry.cpp. A scene that does not name it does not run it.
 #pragma once
 
 #include <memory>

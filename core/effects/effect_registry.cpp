@@ -26,6 +26,8 @@ std::span<const std::string_view> effectNames() {
   return names;
 }
 
-std::unique_ptr<Effect> makeEffect(int effect) { return kEffects.at(static_cast<std::size_t>(effect)).make(); }
+std::unique_ptr<Effect> makeEffect(int effect) {
+  return kEffects.at(static_cast<std::size_t>(effect)).make();
+}
 
 }  // namespace migiwa

@@ -1,6 +1,6 @@
-// XSPH (Schechter & Bridson 2012, Macklin & Mueller 2013): each velocity moves towards the kernel-weighted mean of its
-// neighbours', v_i += c sum_j (m/rho0) (v_j - v_i) W_ij.
-// Deviation: the rest density in place of rho_j makes the pairs symmetric, so momentum is conserved exactly.
+// XSPH (Schechter & Bridson 2012, Macklin & Mueller 2013): each velocity moves towards the kernel-weighted
+// mean of its neighbours', v_i += c sum_j (m/rho0) (v_j - v_i) W_ij. Deviation: the rest density in place of
+// rho_j makes the pairs symmetric, so momentum is conserved exactly.
 #include <array>
 
 #include "core/effects/effects.h"
@@ -48,6 +48,8 @@ class Viscosity final : public Effect {
 
 }  // namespace
 
-std::unique_ptr<Effect> makeViscosity() { return std::make_unique<Viscosity>(); }
+std::unique_ptr<Effect> makeViscosity() {
+  return std::make_unique<Viscosity>();
+}
 
 }  // namespace migiwa

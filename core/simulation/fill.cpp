@@ -3,7 +3,8 @@
 namespace migiwa {
 
 void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
-  // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take rounding.
+  // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take
+  // rounding.
   const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
   std::vector<Vec3d> centers;
   for (std::size_t k = 0; k < scene.fluid.size(); ++k) {

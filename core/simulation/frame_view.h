@@ -1,5 +1,5 @@
-// What a picture, an export or a panel may see of a simulation: spans over its state at the end of a step, and a copy
-// of the same for another thread. All per-particle spans have the same length and order.
+// What a picture, an export or a panel may see of a simulation: spans over its state at the end of a step,
+// and a copy of the same for another thread. All per-particle spans have the same length and order.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 namespace migiwa {
 
 struct FrameInfo {
-  double time = 0;         ///< simulated (s)
-  long steps = 0;          ///< substeps so far
-  float spacing = 0;       ///< particle spacing (m)
-  float supportRadius = 0; ///< (m)
-  std::string handling;    ///< how walls are handled, such as "gamma (product)" or "no correction"
-  int iterations = 0;      ///< of the last step
+  double time = 0;          ///< simulated (s)
+  long steps = 0;           ///< substeps so far
+  float spacing = 0;        ///< particle spacing (m)
+  float supportRadius = 0;  ///< (m)
+  std::string handling;     ///< how walls are handled, such as "gamma (product)" or "no correction"
+  int iterations = 0;       ///< of the last step
   std::vector<IterationError> errors;  ///< of the last step: before the first iteration, then after each
-  StageTimes stages;       ///< of the last frame (s)
-  double stepSeconds = 0;  ///< wall time of the last frame's mean substep
+  StageTimes stages;                   ///< of the last frame (s)
+  double stepSeconds = 0;              ///< wall time of the last frame's mean substep
   std::uint64_t stateHash = 0;
 };
 
@@ -33,7 +33,7 @@ struct FrameView {
   std::span<const Float4> velocities;  ///< (m/s)
   std::span<const float> density;      ///< rho/rho0 after the last iteration
   std::span<const float> gamma;
-  std::span<const float> lambda;       ///< of the last iteration, times the squared support radius (1)
+  std::span<const float> lambda;  ///< of the last iteration, times the squared support radius (1)
   std::span<const std::uint32_t> neighbours;
 };
 

@@ -29,14 +29,16 @@ std::optional<Tank> uprightTank(const Scene& scene) {
     const int first = (axis + 2) % 3, second = (axis + 1) % 3;
     Tank tank;
     tank.center = box->center;
-    tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis), box->axes.col(second);
+    tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis),
+        box->axes.col(second);
     tank.half = {box->halfExtents[first], box->halfExtents[axis], box->halfExtents[second]};
     return tank;
   }
   return std::nullopt;
 }
 
-/// Volume of the strips of cross-section a x a along the four vertical edges and the four floor edges, up to `level`.
+/// Volume of the strips of cross-section a x a along the four vertical edges and the four floor edges, up to
+/// `level`.
 double stripVolume(const Tank& tank, double a, double level) {
   const double width = 2 * tank.half.x() - 2 * a, depth = 2 * tank.half.z() - 2 * a;
   return 4 * a * a * level + 2 * a * std::min(a, level) * (width + depth);
@@ -67,7 +69,8 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f at = sorted[i].xyz();
       float nearest = std::numeric_limits<float>::infinity();
-      for (const std::uint32_t j : lists.of(i)) nearest = std::min(nearest, (at - sorted[j].xyz()).squaredNorm());
+      for (const std::uint32_t j : lists.of(i))
+        nearest = std::min(nearest, (at - sorted[j].xyz()).squaredNorm());
       result[i] = {std::sqrt(nearest) / spacing, boundary.distance(at) < support};
     }
   });

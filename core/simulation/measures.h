@@ -1,12 +1,16 @@
-// The measures of the report's "settled" block, in one place. Definitions, for spacing a and support radius h:
+// The measures of the report's "settled" block, in one place. Definitions, for spacing a and support radius
+// h:
 //   height             twice the height of the centre of mass above the tank's floor (m)
 //   expected height    particles * a^3 / floor area (m)
-//   edge crowding      particles in the strips a x a along the edges where two walls meet, up to the expected height,
+//   edge crowding      particles in the strips a x a along the edges where two walls meet, up to the expected
+//   height,
 //                      over the number that an even filling (one particle per a^3) would put there
-//   spacing p1         1st percentile of the nearest-neighbour distance over a; "near wall" is within h of a surface,
+//   spacing p1         1st percentile of the nearest-neighbour distance over a; "near wall" is within h of a
+//   surface,
 //                      "bulk" all others
 //   rms speed          root mean square over all particles (m/s)
-// Heights and edge crowding need a box that holds the fluid and a gravity along one of its axes; null elsewhere.
+// Heights and edge crowding need a box that holds the fluid and a gravity along one of its axes; null
+// elsewhere.
 #pragma once
 
 #include <optional>

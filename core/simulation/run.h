@@ -1,4 +1,5 @@
-// A run to a given time, sampled for the report on the way. Watching or drawing a run never changes its stepping.
+// A run to a given time, sampled for the report on the way. Watching or drawing a run never changes its
+// stepping.
 #pragma once
 
 #include <functional>
@@ -8,8 +9,9 @@
 
 namespace migiwa {
 
-/// Advances to the frame on which `until` (s) falls. `eachFrame` is called after every frame and may return false to
-/// end early. Ends early, too, once the simulation has stopped itself. Samples the last tenth of the run.
+/// Advances to the frame on which `until` (s) falls. `eachFrame` is called after every frame and may return
+/// false to end early. Ends early, too, once the simulation has stopped itself. Samples the last tenth of the
+/// run.
 SettledMeasures runUntil(Simulation& simulation, double until, const std::function<bool()>& eachFrame = {});
 
 }  // namespace migiwa

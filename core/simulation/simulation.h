@@ -33,7 +33,8 @@ class Simulation {
   double time() const;
 
   Settings settings() const;
-  /// Takes effect with the next frame. Changing the kernel or the support ratio keeps positions and velocities.
+  /// Takes effect with the next frame. Changing the kernel or the support ratio keeps positions and
+  /// velocities.
   void apply(const Settings& settings);
 
   const Scene& scene() const;

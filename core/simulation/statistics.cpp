@@ -7,7 +7,8 @@
 namespace migiwa {
 
 void RunStatistics::note(const std::string& kind, long step, const std::string& detail) {
-  const auto known = std::find_if(trouble.begin(), trouble.end(), [&](const Trouble& t) { return t.kind == kind; });
+  const auto known =
+      std::find_if(trouble.begin(), trouble.end(), [&](const Trouble& t) { return t.kind == kind; });
   if (known != trouble.end()) {
     ++known->count;
   } else {
@@ -37,7 +38,8 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
              " iterations, tolerance " + std::to_string(state.parameters.tolerance));
   }
   if (state.gammaFloored > 0) {
-    note("gamma_floor", steps, std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
+    note("gamma_floor", steps,
+         std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
   }
   if (health.nonfinite > 0) {
     note("nonfinite", steps,
@@ -46,8 +48,8 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   }
   if (health.lost > 0) {
     note("lost_particle", steps,
-         std::to_string(health.lost) + " particles left the scene, particle " + std::to_string(health.firstBad) +
-             " among them");
+         std::to_string(health.lost) + " particles left the scene, particle " +
+             std::to_string(health.firstBad) + " among them");
   }
 }
 

@@ -1,5 +1,5 @@
-// What is counted while a simulation runs; the report (core/io/report.h) writes it down. Names and meanings are those
-// of the report's keys.
+// What is counted while a simulation runs; the report (core/io/report.h) writes it down. Names and meanings
+// are those of the report's keys.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// How far from incompressible the fluid is after an iteration: what [FM] section 4 iterates on.
 #pragma once
 
 namespace migiwa {

@@ -1,6 +1,6 @@
-// METHOD: density [FM] Eq. 5, constraint Eq. 9, its gradients Eqs. 12 and 13 and lambda Eq. 11. Gradients are taken from
-// the pair kernel, as in Macklin & Mueller 2013, gamma's included.
-// Deviation: the constraint is clamped at zero, for the paper is silent on free surfaces and fluid clumps otherwise.
+// METHOD: density [FM] Eq. 5, constraint Eq. 9, its gradients Eqs. 12 and 13 and lambda Eq. 11. Gradients are
+// taken from the pair kernel, as in Macklin & Mueller 2013, gamma's included. Deviation: the constraint is
+// clamped at zero, for the paper is silent on free surfaces and fluid clumps otherwise.
 #include <algorithm>
 #include <cmath>
 
@@ -33,8 +33,8 @@ IterationError lambdaPass(StepState& state) {
           float squaredSlopes = 0;
           Vec3f gradient = Vec3f::Zero();
           for (const std::uint32_t j : state.neighbours.of(i)) {
-            const PairGeometry pair =
-                pairGeometry(at, state.current[j], inverseSupport, state.particles.id[i], state.particles.id[j]);
+            const PairGeometry pair = pairGeometry(at, state.current[j], inverseSupport,
+                                                   state.particles.id[i], state.particles.id[j]);
             covered += Kernel::value(pair.q);
             const float slope = PairKernel<Kernel>::derivative(pair.q);
             gradient += slope * pair.direction;
@@ -58,7 +58,9 @@ IterationError lambdaPass(StepState& state) {
         }
         return part;
       },
-      [](Error a, const Error& b) { return Error{a.sum + b.sum, std::max(a.max, b.max)}; });
+      [](Error a, const Error& b) {
+        return Error{a.sum + b.sum, std::max(a.max, b.max)};
+      });
   return {n > 0 ? error.sum / static_cast<double>(n) : 0, static_cast<double>(error.max)};
 }
 

@@ -8,7 +8,8 @@
 
 namespace migiwa {
 
-/// A unit direction for two particles on one point, from their ids: antisymmetric, so that momentum is conserved.
+/// A unit direction for two particles on one point, from their ids: antisymmetric, so that momentum is
+/// conserved.
 inline Vec3f coincidentDirection(std::uint32_t id, std::uint32_t other) {
   const std::uint32_t low = id < other ? id : other, high = id < other ? other : id;
   std::uint32_t bits = low * 0x9E3779B1U ^ (high * 0x85EBCA77U + 0xC2B2AE3DU);
@@ -33,7 +34,8 @@ struct PairGeometry {
 };
 inline PairGeometry pairGeometry(const Float4& a, const Float4& b, float inverseSupport, std::uint32_t idA,
                                  std::uint32_t idB) {
-  const Vec3f offset((a.x - b.x) * inverseSupport, (a.y - b.y) * inverseSupport, (a.z - b.z) * inverseSupport);
+  const Vec3f offset((a.x - b.x) * inverseSupport, (a.y - b.y) * inverseSupport,
+                     (a.z - b.z) * inverseSupport);
   const float q = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z());
   if (q > kCoincident) return {q, offset * (1 / q)};
   return {q, coincidentDirection(idA, idB)};

@@ -6,8 +6,9 @@ namespace migiwa {
 
 namespace {
 
-/// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations are
-/// used up. errors[k] is the error after k iterations, so the last one is that of the positions that stay.
+/// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
+/// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
+/// stay.
 void solveConstraint(StepState& state) {
   const SolverParameters& parameters = state.parameters;
   state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
@@ -16,12 +17,14 @@ void solveConstraint(StepState& state) {
   state.iterations = 0;
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
-    if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance) break;
+    if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
+      break;
     if (state.iterations >= parameters.maxIterations) break;
     state.times.time("position", [&] { stages::movePositions(state); });
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });
-      if (state.gammaMethod != nullptr) state.times.time("gamma_refresh", [&] { stages::refreshGamma(state); });
+      if (state.gammaMethod != nullptr)
+        state.times.time("gamma_refresh", [&] { stages::refreshGamma(state); });
     }
     ++state.iterations;
   }
@@ -49,15 +52,16 @@ long stabilise(StepState& state) {
         long count = 0;
         for (std::size_t i = begin; i < end; ++i) {
           Vec3f p = particles.position[i].xyz();
-          if (state.boundary.project(p, state.wallMargin()) && (p - particles.position[i].xyz()).norm() > allowed)
+          if (state.boundary.project(p, state.wallMargin()) &&
+              (p - particles.position[i].xyz()).norm() > allowed)
             ++count;
         }
         return count;
       },
       [](long a, long b) { return a + b; });
   if (inside == 0) return 0;
-  // The mean hides the few that were pushed: what counts here is the largest error, and a wall's first layer of a
-  // resting lattice reads some percent by itself. Neighbours change on the way, hence several solves.
+  // The mean hides the few that were pushed: what counts here is the largest error, and a wall's first layer
+  // of a resting lattice reads some percent by itself. Neighbours change on the way, hence several solves.
   constexpr double kCalm = 0.04;
   constexpr int kMostSolves = 30;
   for (int solve = 0; solve < kMostSolves; ++solve) {

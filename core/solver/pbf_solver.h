@@ -1,4 +1,5 @@
-// The position based fluid step ([FM] section 4, Macklin & Mueller 2013) as an ordered list of named, timed stages.
+// The position based fluid step ([FM] section 4, Macklin & Mueller 2013) as an ordered list of named, timed
+// stages.
 #pragma once
 
 #include <memory>
@@ -19,8 +20,8 @@ struct EffectStage {
 /// Advances the state by `state.timeStep`.
 void advanceStep(StepState& state, const std::vector<EffectStage>& effects);
 
-/// For fluid that starts inside walls: projects it out and solves the density on the positions alone, so that the push
-/// does not become speed. Returns how many particles were inside; 0: nothing was done.
+/// For fluid that starts inside walls: projects it out and solves the density on the positions alone, so that
+/// the push does not become speed. Returns how many particles were inside; 0: nothing was done.
 long stabilise(StepState& state);
 
 /// Neighbours, gamma, density and lambda of the positions as they are, for a picture of the start.

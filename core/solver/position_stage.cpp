@@ -1,6 +1,7 @@
 // METHOD: the displacement of [FM] Eq. 10 in three forms, see PositionStep.
 // Deviation: the default is the constraint's true gradient step,
-//   dx_i = (m/rho0) sum_j (lambda_i/gamma_i + lambda_j/gamma_j) grad W_ij - lambda_i rho_i/(rho0 gamma_i) grad gamma_i,
+//   dx_i = (m/rho0) sum_j (lambda_i/gamma_i + lambda_j/gamma_j) grad W_ij - lambda_i rho_i/(rho0 gamma_i)
+//   grad gamma_i,
 // whose last term is the wall pushing back; Eq. 10 as printed lets particles crowd the wall.
 #include "core/solver/pair_geometry.h"
 #include "core/solver/stages.h"
@@ -28,7 +29,8 @@ void positionPass(StepState& state) {
       }
       move *= state.lattice.massRatio;
       if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
-        move -= state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
+        move -=
+            state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
       state.next[i] = Float4(at.xyz() + state.supportRadius * move, at.w);
     }
   });

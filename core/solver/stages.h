@@ -1,4 +1,5 @@
-// The stages of a step, in the order in which they run. Each gathers: it writes only what belongs to its own particle.
+// The stages of a step, in the order in which they run. Each gathers: it writes only what belongs to its own
+// particle.
 #pragma once
 
 #include "core/solver/step_state.h"

@@ -1,6 +1,6 @@
-// Everything that the stages of a step read and write. Per-particle arrays share one order, along the search grid;
-// `id` tells particles apart across steps. Lengths inside the solver are metres; densities are rho/rho0; gradients are
-// per support radius, so that nothing over- or underflows with the size of the scene.
+// Everything that the stages of a step read and write. Per-particle arrays share one order, along the search
+// grid; `id` tells particles apart across steps. Lengths inside the solver are metres; densities are
+// rho/rho0; gradients are per support radius, so that nothing over- or underflows with the size of the scene.
 #pragma once
 
 #include <cstdint>

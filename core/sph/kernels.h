@@ -1,7 +1,7 @@
-// The smoothing kernels W(q), q = r/h, for support 1, with the closed forms of gamma for one plane ([FM] Eqs. 6 to 8).
-// Multiply W by 1/h^3 and its derivative by 1/h^4 for SI units. planeGamma(e) is the part of the kernel on the fluid
-// side of a plane at signed distance e = d/h; planeGammaSlope(e) its derivative, so grad gamma = slope * n / h.
-// The forms in T = 1 - e do not cancel in float.
+// The smoothing kernels W(q), q = r/h, for support 1, with the closed forms of gamma for one plane ([FM] Eqs.
+// 6 to 8). Multiply W by 1/h^3 and its derivative by 1/h^4 for SI units. planeGamma(e) is the part of the
+// kernel on the fluid side of a plane at signed distance e = d/h; planeGammaSlope(e) its derivative, so grad
+// gamma = slope * n / h. The forms in T = 1 - e do not cancel in float.
 #pragma once
 
 #include <numbers>
@@ -14,9 +14,15 @@ namespace kernel_detail {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
-inline constexpr float square(float v) { return v * v; }
-inline constexpr float cube(float v) { return v * v * v; }
-inline constexpr float fifth(float v) { return square(square(v)) * v; }
+inline constexpr float square(float v) {
+  return v * v;
+}
+inline constexpr float cube(float v) {
+  return v * v * v;
+}
+inline constexpr float fifth(float v) {
+  return square(square(v)) * v;
+}
 
 /// Extends a gamma known for e in [0, 1) by gamma(-e) = 1 - gamma(e).
 template <class Positive>
@@ -63,7 +69,8 @@ struct Spiky {
     return q < 1 ? -45 / kernel_detail::kPi * kernel_detail::square(1 - q) : 0;
   }
   static constexpr float planeGamma(float e) {
-    return kernel_detail::extendGamma(e, [](float d) { return 1 - kernel_detail::fifth(1 - d) * (0.5F + d); });
+    return kernel_detail::extendGamma(e,
+                                      [](float d) { return 1 - kernel_detail::fifth(1 - d) * (0.5F + d); });
   }
   static constexpr float planeGammaSlope(float e) {
     return kernel_detail::extendSlope(
@@ -75,11 +82,13 @@ struct Spiky {
 struct CubicSpline {
   static constexpr float value(float q) {
     if (q >= 1) return 0;
-    return q <= 0.5F ? 8 / kernel_detail::kPi * (1 - 6 * q * q * (1 - q)) : 16 / kernel_detail::kPi * kernel_detail::cube(1 - q);
+    return q <= 0.5F ? 8 / kernel_detail::kPi * (1 - 6 * q * q * (1 - q))
+                     : 16 / kernel_detail::kPi * kernel_detail::cube(1 - q);
   }
   static constexpr float derivative(float q) {
     if (q >= 1) return 0;
-    return q <= 0.5F ? -48 / kernel_detail::kPi * q * (2 - 3 * q) : -48 / kernel_detail::kPi * kernel_detail::square(1 - q);
+    return q <= 0.5F ? -48 / kernel_detail::kPi * q * (2 - 3 * q)
+                     : -48 / kernel_detail::kPi * kernel_detail::square(1 - q);
   }
   static constexpr float planeGamma(float e) {
     return kernel_detail::extendGamma(e, [](float d) {
@@ -100,7 +109,9 @@ struct CubicSpline {
 /// Wendland 1995, C2.
 struct WendlandC2 {
   static constexpr float value(float q) {
-    return q < 1 ? 21 / (2 * kernel_detail::kPi) * kernel_detail::square(kernel_detail::square(1 - q)) * (1 + 4 * q) : 0;
+    return q < 1 ? 21 / (2 * kernel_detail::kPi) * kernel_detail::square(kernel_detail::square(1 - q)) *
+                       (1 + 4 * q)
+                 : 0;
   }
   static constexpr float derivative(float q) {
     return q < 1 ? -210 / kernel_detail::kPi * q * kernel_detail::cube(1 - q) : 0;
@@ -115,8 +126,8 @@ struct WendlandC2 {
   }
 };
 
-/// The kernel whose gradient moves particles, for a given density kernel: Spiky's where the density kernel's own
-/// gradient vanishes at the centre (Macklin & Mueller 2013), else the kernel's own.
+/// The kernel whose gradient moves particles, for a given density kernel: Spiky's where the density kernel's
+/// own gradient vanishes at the centre (Macklin & Mueller 2013), else the kernel's own.
 template <class Kernel>
 struct PairKernelOf {
   using Type = Kernel;

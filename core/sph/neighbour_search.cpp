@@ -91,7 +91,8 @@ std::pair<std::uint32_t, std::uint32_t> CellGrid::row(int x0, int x1, int y, int
   return {start_[first + static_cast<std::size_t>(x0)], start_[first + static_cast<std::size_t>(x1) + 1]};
 }
 
-void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius, ThreadPool& pool) {
+void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius,
+                           ThreadPool& pool) {
   const std::size_t n = positions.size();
   chunks_.resize(chunkCount(n));
   start_.resize(n);

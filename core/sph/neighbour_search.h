@@ -1,6 +1,6 @@
-// Neighbours within the support radius, by a counting sort over a uniform grid. Particles are reordered along the
-// grid first, so that neighbours in space are neighbours in memory. The order depends on positions alone, never on
-// the number of threads.
+// Neighbours within the support radius, by a counting sort over a uniform grid. Particles are reordered along
+// the grid first, so that neighbours in space are neighbours in memory. The order depends on positions alone,
+// never on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,12 @@
 
 namespace migiwa {
 
-/// Uniform grid over the particles' bounding box; cells are at least `cellSize` wide, more where particles are spread
-/// so thin that such cells would outnumber them.
+/// Uniform grid over the particles' bounding box; cells are at least `cellSize` wide, more where particles
+/// are spread so thin that such cells would outnumber them.
 class CellGrid {
  public:
-  /// Sorts: afterwards order()[k] is the index of the particle that comes k-th along the grid. Positions must be finite.
+  /// Sorts: afterwards order()[k] is the index of the particle that comes k-th along the grid. Positions must
+  /// be finite.
   void build(std::span<const Float4> positions, float cellSize, ThreadPool& pool);
   const std::vector<std::uint32_t>& order() const { return order_; }
 

@@ -15,7 +15,8 @@ RestingLattice restingLattice(KernelType type, double supportRatio) {
     for (int k = -reach; k <= reach; ++k) {
       for (int j = -reach; j <= reach; ++j) {
         for (int i = -reach; i <= reach; ++i) {
-          const auto q = static_cast<float>(std::sqrt(static_cast<double>(i * i + j * j + k * k)) / supportRatio);
+          const auto q =
+              static_cast<float>(std::sqrt(static_cast<double>(i * i + j * j + k * k)) / supportRatio);
           values += static_cast<double>(Density::value(q));
           const double slope = q > 0 ? static_cast<double>(Pair::derivative(q)) : 0;
           squaredSlopes += slope * slope;
@@ -23,7 +24,8 @@ RestingLattice restingLattice(KernelType type, double supportRatio) {
       }
     }
     const double massRatio = 1 / values;
-    return RestingLattice{static_cast<float>(massRatio), static_cast<float>(massRatio * massRatio * squaredSlopes)};
+    return RestingLattice{static_cast<float>(massRatio),
+                          static_cast<float>(massRatio * massRatio * squaredSlopes)};
   });
 }
 

@@ -1,5 +1,5 @@
-// What the kernels sum to on the cubic lattice that a scene starts from. The rest density is that sum, so that a
-// resting lattice has C = 0, and Eq. 11's epsilon is measured in units of its constraint gradients.
+// What the kernels sum to on the cubic lattice that a scene starts from. The rest density is that sum, so
+// that a resting lattice has C = 0, and Eq. 11's epsilon is measured in units of its constraint gradients.
 #pragma once
 
 #include "core/sph/kernel_type.h"

@@ -144,7 +144,8 @@ TEST_P(Parallel, ManyShortRunsInARow) {
   EXPECT_EQ(total, 3000u / 9 * 36 + 0 + 1 + 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 3, 8, 64));
+INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 3, 8, 64),
+                         testing::PrintToStringParamName());
 
 TEST(ThreadPool, ZeroTakesWhatTheMachineHas) {
   const ThreadPool pool(0);

@@ -1,9 +1,9 @@
 // Several walls together.
 #include "core/boundary/boundary.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "core/boundary/box.h"
 #include "core/boundary/plane.h"
@@ -29,8 +29,9 @@ TEST(Boundary, DistanceIsThatOfTheNearestWall) {
 TEST(Boundary, ProjectionSatisfiesAllWallsOfAWedgeAndATankWithABlock) {
   const Boundary wedge({std::make_shared<Plane>(Vec3d(0, 0, 0), Vec3d(0, 1, 0)),
                         std::make_shared<Plane>(Vec3d(0, 0, 0), Vec3d(0.8, -0.6, 0))});
-  const Boundary tank({std::make_shared<Box>(Vec3d(-1, -1, -1), Vec3d(1, 1, 1), Box::Fluid::inside),
-                       std::make_shared<Box>(Vec3d(-0.2, -1, -0.2), Vec3d(0.2, 0, 0.2), Box::Fluid::outside)});
+  const Boundary tank(
+      {std::make_shared<Box>(Vec3d(-1, -1, -1), Vec3d(1, 1, 1), Box::Fluid::inside),
+       std::make_shared<Box>(Vec3d(-0.2, -1, -0.2), Vec3d(0.2, 0, 0.2), Box::Fluid::outside)});
   std::mt19937 random(3);
   std::uniform_real_distribution<float> coordinate(-1.2F, 1.2F);
   for (int k = 0; k < 300; ++k) {

@@ -1,8 +1,8 @@
 // gamma of the methods against a Gauss-Legendre quadrature of the kernel over the fluid, cut at the walls.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "core/boundary/box.h"
 #include "core/boundary/gamma_method.h"
@@ -14,7 +14,9 @@ namespace {
 
 constexpr float kSupport = 0.1F;
 
-double poly6(double q) { return q < 1 ? 315 / (64 * std::numbers::pi) * std::pow(1 - q * q, 3) : 0; }
+double poly6(double q) {
+  return q < 1 ? 315 / (64 * std::numbers::pi) * std::pow(1 - q * q, 3) : 0;
+}
 
 /// Integral of Poly6 of support 1 over the box [low, high] in coordinates relative to the kernel's centre.
 double overBox(Vec3d low, Vec3d high) {
@@ -57,7 +59,8 @@ Walls tank(double size) {
   return Walls({std::make_shared<Box>(Vec3d::Zero(), Vec3d::Constant(size), Box::Fluid::inside)});
 }
 
-/// Largest error of a method in a tank, against the integral over the tank, at points up to h from its corner.
+/// Largest error of a method in a tank, against the integral over the tank, at points up to h from its
+/// corner.
 double largestErrorInTank(std::string_view name, double size, const Vec3f& from, const Vec3f& to) {
   const Walls walls = tank(size);
   const PickedGamma picked = walls.make(name);
@@ -66,10 +69,12 @@ double largestErrorInTank(std::string_view name, double size, const Vec3f& from,
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; j <= kSteps; ++j) {
       for (int k = 0; k <= kSteps; ++k) {
-        const Vec3f part = Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)) / kSteps;
+        const Vec3f part =
+            Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)) / kSteps;
         const Vec3f p = from + part.cwiseProduct(to - from);
         const Vec3d relative = p.cast<double>() / static_cast<double>(kSupport);
-        const double truth = overBox(-relative, Vec3d::Constant(size / static_cast<double>(kSupport)) - relative);
+        const double truth =
+            overBox(-relative, Vec3d::Constant(size / static_cast<double>(kSupport)) - relative);
         largest = std::max(largest, std::abs(static_cast<double>(sampleAt(*picked.method, p).gamma) - truth));
       }
     }
@@ -92,7 +97,8 @@ TEST(Gamma, ProductIsExactBetweenParallelPlanes) {
   const PickedGamma picked = slit.make("product");
   for (const float y : {0.0F, 0.01F, 0.03F, 0.04F, 0.08F}) {
     const double low = static_cast<double>(-y / kSupport), high = static_cast<double>((0.08F - y) / kSupport);
-    EXPECT_NEAR(static_cast<double>(sampleAt(*picked.method, {0, y, 0}).gamma), overBox({-1, low, -1}, {1, high, 1}), 1e-5);
+    EXPECT_NEAR(static_cast<double>(sampleAt(*picked.method, {0, y, 0}).gamma),
+                overBox({-1, low, -1}, {1, high, 1}), 1e-5);
   }
 }
 
@@ -125,14 +131,16 @@ TEST(Gamma, ProductAtABlockMatchesTheKernelAroundIt) {
     if (d < 0 || d > h) continue;
     ++evaluated;
     const double truth = 1 - overBox((low - p) / h, (high - p) / h);
-    EXPECT_NEAR(static_cast<double>(sampleAt(*picked.method, p.cast<float>()).gamma), truth, 0.008) << p.transpose();
+    EXPECT_NEAR(static_cast<double>(sampleAt(*picked.method, p.cast<float>()).gamma), truth, 0.008)
+        << p.transpose();
   }
   EXPECT_EQ(evaluated, 60);
 }
 
 TEST(Gamma, GradientIsTheDerivativeForEveryMethodAndKernel) {
-  const Walls walls({std::make_shared<Box>(Vec3d::Zero(), Vec3d::Ones(), Box::Fluid::inside, Rotation{{1, 1, 0}, 20}),
-                     std::make_shared<Box>(Vec3d(0.4, 0.3, 0.4), Vec3d(0.6, 0.36, 0.6), Box::Fluid::outside)});
+  const Walls walls(
+      {std::make_shared<Box>(Vec3d::Zero(), Vec3d::Ones(), Box::Fluid::inside, Rotation{{1, 1, 0}, 20}),
+       std::make_shared<Box>(Vec3d(0.4, 0.3, 0.4), Vec3d(0.6, 0.36, 0.6), Box::Fluid::outside)});
   std::mt19937 random(5);
   std::uniform_real_distribution<float> coordinate(0, 1);
   constexpr float kStep = 2e-4F;
@@ -150,8 +158,9 @@ TEST(Gamma, GradientIsTheDerivativeForEveryMethodAndKernel) {
         Vec3f difference;
         for (int axis = 0; axis < 3; ++axis) {
           const Vec3f step = kStep * Vec3f::Unit(axis);
-          difference[axis] = (sampleAt(*picked.method, p + step).gamma - sampleAt(*picked.method, p - step).gamma) /
-                             (2 * kStep / kSupport);
+          difference[axis] =
+              (sampleAt(*picked.method, p + step).gamma - sampleAt(*picked.method, p - step).gamma) /
+              (2 * kStep / kSupport);
         }
         // The mean jumps where a piece comes into reach: its weight is e^-2 there, not zero.
         if (name == "mean" && (difference - sample.gradient).norm() > 5) continue;

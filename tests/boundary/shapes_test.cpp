@@ -1,8 +1,8 @@
 // Distances and projections of the shapes against closed forms and brute force.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "core/boundary/box.h"
 #include "core/boundary/plane.h"
@@ -16,7 +16,8 @@ std::vector<Vec3f> randomPoints(int count, double reach, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> coordinate(static_cast<float>(-reach), static_cast<float>(reach));
   std::vector<Vec3f> points;
-  for (int k = 0; k < count; ++k) points.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+  for (int k = 0; k < count; ++k)
+    points.emplace_back(coordinate(random), coordinate(random), coordinate(random));
   return points;
 }
 
@@ -58,7 +59,8 @@ TEST(Box, DistanceAgreesWithTheNearestOfSixFaces) {
       for (const Vec3f& p : randomPoints(500, 1.5, 1)) {
         const Vec3d local = rotation.matrix().transpose() * (p.cast<double>() - center);
         const bool inside = (local.cwiseAbs().array() < half.array()).all();
-        const double expected = (inside == (fluid == Box::Fluid::inside) ? 1 : -1) * distanceToFaces(local, half);
+        const double expected =
+            (inside == (fluid == Box::Fluid::inside) ? 1 : -1) * distanceToFaces(local, half);
         Vec3f normal;
         const auto found = static_cast<double>(box.distance(p, normal));
         ASSERT_NEAR(found, expected, 1e-5);

@@ -1,5 +1,7 @@
 // Every scene of scenes/ at two times, with and without panels, against the pictures in tests/golden.
-// MIGIWA_RENEW_GOLDEN=1 in the environment writes them anew instead.
+// With --update-golden the program writes them anew instead.
+#include "tests/render/golden.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -41,7 +43,7 @@ Image picture(const Simulation& simulation, const Scene& scene, bool panels,
 /// Compares with the golden picture of that name, or writes it. What differs is kept for looking at.
 void compare(const Image& found, const std::string& name) {
   const fs::path golden = fs::path(MIGIWA_SOURCE_DIR) / "tests" / "golden" / (name + ".png");
-  if (std::getenv("MIGIWA_RENEW_GOLDEN")) {
+  if (updateGolden) {
     fs::create_directories(golden.parent_path());
     writeTextFile(golden, encodePng(found));
     return;

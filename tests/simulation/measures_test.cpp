@@ -1,9 +1,9 @@
 // The report's measures on lattices whose answer is known.
 #include "core/simulation/measures.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/test_scenes.h"
 
@@ -25,7 +25,8 @@ std::vector<Float4> lattice(int layers, double stretch = 1) {
   for (int k = 0; k < 6; ++k)
     for (int j = 0; j < layers; ++j)
       for (int i = 0; i < 8; ++i)
-        points.emplace_back(Vec3d((i + 0.5) * kSpacing, (j + 0.5) * kSpacing * stretch, (k + 0.5) * kSpacing).cast<float>());
+        points.emplace_back(
+            Vec3d((i + 0.5) * kSpacing, (j + 0.5) * kSpacing * stretch, (k + 0.5) * kSpacing).cast<float>());
   return points;
 }
 
@@ -54,8 +55,8 @@ TEST(Measures, ACompressedLatticeIsLowAndClose) {
 
 TEST(Measures, EdgeCrowdingCountsWhatIsInTheStrips) {
   std::vector<Float4> points = lattice(10);
-  // 4 vertical edges of 10 and floor edges of 2 (6 + 4) cells hold 60 particles. Thirty more on one edge: 1.5 times,
-  // over a level that 30 particles raise by 30/48 of a layer.
+  // 4 vertical edges of 10 and floor edges of 2 (6 + 4) cells hold 60 particles. Thirty more on one edge: 1.5
+  // times, over a level that 30 particles raise by 30/48 of a layer.
   for (int k = 0; k < 30; ++k) points.emplace_back(0.02F, 0.1F + 0.01F * static_cast<float>(k), 0.01F);
   const double level = 10 + 30.0 / 48;
   EXPECT_NEAR(*measure(tankScene(), points).edgeCrowding, 90 / (4 * level + 20), 1e-5);
@@ -89,7 +90,8 @@ TEST(Measures, FramesAreAveraged) {
   const Scene scene = tankScene();
   for (const int layers : {8, 12}) {
     const std::vector<Float4> points = lattice(layers);
-    sampler.sample(scene, points, std::vector<Float4>(points.size(), Float4(layers == 8 ? 0.0F : 2.0F, 0, 0)));
+    sampler.sample(scene, points,
+                   std::vector<Float4>(points.size(), Float4(layers == 8 ? 0.0F : 2.0F, 0, 0)));
   }
   EXPECT_NEAR(*sampler.result().height, 0.5, 1e-6);
   EXPECT_NEAR(*sampler.result().rmsSpeed, std::sqrt(2.0), 1e-6);

@@ -35,8 +35,9 @@ TEST(Rest, WithoutItParticlesClumpAtTheWallsAndTheWaterSinks) {
 }
 
 TEST(Rest, ThePressureOfAColumnGrowsLinearlyWithDepth) {
-  // [FM] Eq. 11 at rest: the multipliers, summed over a step's iterations, carry the weight above. What a layer's
-  // particles are pushed up in a step must undo the fall g dt^2 of all layers above; so lambda grows linearly.
+  // [FM] Eq. 11 at rest: the multipliers, summed over a step's iterations, carry the weight above. What a
+  // layer's particles are pushed up in a step must undo the fall g dt^2 of all layers above; so lambda grows
+  // linearly.
   Scene scene = stillTank({10, 20, 10});
   scene.solver.tolerance = 0;
   scene.solver.minIterations = scene.solver.maxIterations = 1;
@@ -59,7 +60,8 @@ TEST(Rest, ThePressureOfAColumnGrowsLinearlyWithDepth) {
   }
   double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
   for (int band = 0; band < kBands; ++band) {
-    const double x = band, y = lambda[static_cast<std::size_t>(band)] / static_cast<double>(counts[static_cast<std::size_t>(band)]);
+    const double x = band, y = lambda[static_cast<std::size_t>(band)] /
+                               static_cast<double>(counts[static_cast<std::size_t>(band)]);
     sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
   }
   const double covariance = kBands * sxy - sx * sy;

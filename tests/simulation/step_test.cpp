@@ -1,7 +1,7 @@
 // The step against what mechanics says of it.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/boundary/boundary.h"
 #include "core/simulation/simulation.h"
@@ -49,9 +49,10 @@ TEST(Step, FreeFallIsThatOfSymplecticEuler) {
   constexpr int kSteps = 60;
   for (int k = 0; k < kSteps; ++k) simulation.advanceFrame();
   const double dt = scene.solver.timeStep;
-  // x_n = x_0 + n dt v_0 + dt^2 g n (n + 1) / 2, exactly: the lattice is at rest density and nothing else acts.
-  const Vec3d expected = start + kSteps * dt * Vec3d(0.5, 1, 0) +
-                         dt * dt * scene.gravity * (0.5 * kSteps * (kSteps + 1));
+  // x_n = x_0 + n dt v_0 + dt^2 g n (n + 1) / 2, exactly: the lattice is at rest density and nothing else
+  // acts.
+  const Vec3d expected =
+      start + kSteps * dt * Vec3d(0.5, 1, 0) + dt * dt * scene.gravity * (0.5 * kSteps * (kSteps + 1));
   EXPECT_LT((meanPosition(simulation.view()) - expected).norm(), 2e-5);
   for (const Float4& v : simulation.view().velocities) {
     EXPECT_NEAR(static_cast<double>(v.y), 1 - 9.81 * dt * kSteps, 2e-3);
@@ -71,7 +72,8 @@ TEST(Step, CollidingBlocksKeepMomentumWithoutGravityAndWalls) {
     double largestError = 0;
     for (int k = 0; k < 60; ++k) {
       simulation.advanceFrame();
-      for (const IterationError& error : simulation.view().info.errors) largestError = std::max(largestError, error.max);
+      for (const IterationError& error : simulation.view().info.errors)
+        largestError = std::max(largestError, error.max);
     }
     const FrameView view = simulation.view();
     const double scale = static_cast<double>(view.positions.size()) * meanSpeed(view);
@@ -189,7 +191,8 @@ TEST(Step, CoincidentParticlesPartAndKeepTheirMomentum) {
   ASSERT_FALSE(simulation.statistics().failed());
   const FrameView view = simulation.view();
   EXPECT_LT(view.info.errors.back().max, 0.1);
-  EXPECT_LT(momentum(view).norm(), 1e-3 * static_cast<double>(view.positions.size()) * meanSpeed(view) + 1e-6);
+  EXPECT_LT(momentum(view).norm(),
+            1e-3 * static_cast<double>(view.positions.size()) * meanSpeed(view) + 1e-6);
   for (std::size_t i = 0; i < view.positions.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       ASSERT_GT((view.positions[i].xyz() - view.positions[j].xyz()).norm(), 1e-4F * view.info.supportRadius);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <type_traits>
 
 #include <gtest/gtest.h>
@@ -63,18 +62,8 @@ double halfSpaceIntegral(Kernel kernel, double e) {
 template <class Kernel>
 class KernelTest : public testing::Test {};
 
-struct KernelNames {
-  template <class Kernel>
-  static std::string GetName(int) {
-    if (std::is_same_v<Kernel, Poly6>) return "Poly6";
-    if (std::is_same_v<Kernel, Spiky>) return "Spiky";
-    if (std::is_same_v<Kernel, CubicSpline>) return "CubicSpline";
-    return "WendlandC2";
-  }
-};
-
 using Kernels = testing::Types<Poly6, Spiky, CubicSpline, WendlandC2>;
-TYPED_TEST_SUITE(KernelTest, Kernels, KernelNames);
+TYPED_TEST_SUITE(KernelTest, Kernels);
 
 // Distances on both sides of every place where a formula changes, and a fine sweep.
 std::vector<double> sweep(double from, double to) {
