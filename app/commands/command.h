@@ -36,6 +36,7 @@ Command viewCommand();
 Command renderCommand();
 Command simulateCommand();
 Command checkCommand();
+Command gammaCommand();
 Command summaryCommand();
 
 }  // namespace migiwa

@@ -33,7 +33,9 @@ void JsonWriter::vector(std::string_view key, Vec3d& value, const FieldDoc&) {
 }
 
 void JsonWriter::triples(std::string_view key, std::vector<std::array<double, 3>>& values, const FieldDoc&) {
-  put(key, values);
+  Json rows = Json::array();
+  for (const std::array<double, 3>& row : values) rows.push_back(Json::array({row[0], row[1], row[2]}));
+  put(key, std::move(rows));
 }
 
 void JsonWriter::pair(std::string_view key, std::array<double, 2>& value, const FieldDoc&, bool* present) {

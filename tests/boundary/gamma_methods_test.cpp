@@ -85,8 +85,10 @@ double largestErrorInTank(std::string_view name, double size, const Vec3f& from,
 const Vec3f kCorner = Vec3f::Zero(), kAway = Vec3f::Constant(kSupport);
 
 TEST(Gamma, EveryMethodIsExactAtOnePlane) {
-  for (const std::string_view name : gammaMethodNames())
-    EXPECT_LT(largestErrorInTank(name, 1, {0, 0.5F, 0.5F}, {kSupport, 0.5F, 0.5F}), 1e-5) << name;
+  for (const std::string_view name : gammaMethodNames()) {
+    const double bound = name == "monte_carlo" ? 1e-3 : 1e-5;
+    EXPECT_LT(largestErrorInTank(name, 1, {0, 0.5F, 0.5F}, {kSupport, 0.5F, 0.5F}), bound) << name;
+  }
 }
 
 TEST(Gamma, ProductIsExactBetweenParallelPlanes) {
@@ -144,7 +146,7 @@ TEST(Gamma, GradientIsTheDerivativeForEveryMethodAndKernel) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> coordinate(0, 1);
   constexpr float kStep = 2e-4F;
-  for (const std::string_view name : {"product", "mean"}) {
+  for (const std::string_view name : {"product", "copula", "directions", "mean"}) {
     for (const KernelType kernel :
          {KernelType::poly6, KernelType::spiky, KernelType::cubicSpline, KernelType::wendlandC2}) {
       const PickedGamma picked = walls.make(name, kernel);
@@ -164,7 +166,8 @@ TEST(Gamma, GradientIsTheDerivativeForEveryMethodAndKernel) {
         }
         // The mean jumps where a piece comes into reach: its weight is e^-2 there, not zero.
         if (name == "mean" && (difference - sample.gradient).norm() > 5) continue;
-        EXPECT_LT((difference - sample.gradient).norm(), 0.01F) << name << " at " << p.transpose();
+        EXPECT_LT((difference - sample.gradient).norm(), name == "directions" ? 0.05F : 0.01F)
+            << name << " at " << p.transpose();
       }
       EXPECT_EQ(evaluated, 40);
     }
@@ -177,7 +180,8 @@ TEST(Gamma, TheWallsPushComesFromThePairKernel) {
   const double expected = std::pow(0.6, 4) * (1.5 + 6 * 0.4);
   for (const std::string_view name : gammaMethodNames()) {
     const GammaSample sample = sampleAt(*walls.make(name).method, {0.2F, 0.04F, 0});
-    EXPECT_NEAR(static_cast<double>(sample.pairGradient.y()), expected, 1e-5) << name;
+    EXPECT_NEAR(static_cast<double>(sample.pairGradient.y()), expected, name == "monte_carlo" ? 5e-3 : 1e-5)
+        << name;
     EXPECT_NEAR(static_cast<double>(sample.distance), 0.04, 1e-6) << name;
   }
 }

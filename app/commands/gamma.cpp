@@ -1,0 +1,232 @@
+// `migiwa gamma SCENE`: gamma at given points, or as a map with its error: the paper's Figure 3.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+#include "app/commands/gamma_plot.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/io/output_file.h"
+#include "core/io/points_csv.h"
+
+namespace migiwa {
+
+namespace {
+
+struct GammaOptions {
+  std::string scene, points, out, map, window;
+  bool allMethods = false;
+};
+
+GammaContext contextOf(const Scene& scene, const Boundary& boundary) {
+  return {boundary, scene.solver.kernel, static_cast<float>(scene.supportRadius()), scene.boundary.directions,
+          scene.boundary.samples};
+}
+
+void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
+  requireWritable(options.out, "--out");
+  const std::vector<Vec3d> points = readPoints(options.points);
+  const Boundary boundary(scene.surfaces);
+  const GammaContext context = contextOf(scene, boundary);
+  const PickedGamma picked = makeGammaMethod(scene.boundary.gammaMethod, context);
+  std::vector<Float4> at(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4(points[i].cast<float>());
+  std::vector<GammaSample> samples(points.size());
+  parallelFor(pool, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    picked.method->evaluate(std::span(at).subspan(begin, end - begin),
+                            std::span(samples).subspan(begin, end - begin));
+  });
+  std::string text = "x,y,z,gamma,gradient_x,gradient_y,gradient_z,distance\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d& p = points[i];
+    const Vec3f gradient = samples[i].gradient / context.supportRadius;
+    char row[256];
+    std::snprintf(row, sizeof row, "%.9g,%.9g,%.9g,%.7g,%.7g,%.7g,%.7g,%.7g\n", p.x(), p.y(), p.z(),
+                  static_cast<double>(samples[i].gamma), static_cast<double>(gradient.x()),
+                  static_cast<double>(gradient.y()), static_cast<double>(gradient.z()),
+                  static_cast<double>(samples[i].distance));
+    text += row;
+  }
+  writeTextFile(options.out, text);
+}
+
+/// `x0,y0,x1,y1` in m, or nothing: all of the scene in the cut, or three support radii about the origin where
+/// no wall is finite.
+MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
+  MapWindow window;
+  const Bounds bounds = scene.bounds();
+  window.axis = static_cast<int>(scene.view.clip.axis);
+  window.at = scene.view.clip.enabled ? scene.view.clip.at
+              : bounds.empty()        ? 0
+                                      : bounds.center()[window.axis];
+  window.across = window.axis == 0 ? 2 : 0;
+  window.up = window.axis == 1 ? 2 : 1;
+  const double reach = 1.5 * scene.supportRadius();
+  std::array<double, 4> corners{-reach, -reach, reach, reach};
+  if (!bounds.empty())
+    corners = {bounds.min[window.across], bounds.min[window.up], bounds.max[window.across],
+               bounds.max[window.up]};
+  if (!options.window.empty()) {
+    const char* at = options.window.data();
+    const char* const end = at + options.window.size();
+    bool sound = true;
+    for (std::size_t k = 0; k < corners.size() && sound; ++k) {
+      const auto [next, error] = std::from_chars(at, end, corners[k]);
+      sound = error == std::errc() && kCoordinateRange.contains(corners[k]) &&
+              (k + 1 < corners.size() ? next != end && *next == ',' : next == end);
+      at = next + 1;
+    }
+    if (!sound || corners[0] >= corners[2] || corners[1] >= corners[3])
+      throw InputError("--window", "expected x0,y0,x1,y1 in m, the lower left corner first, found '" +
+                                       options.window + "'");
+  }
+  window.low[0] = corners[0], window.low[1] = corners[1];
+  window.high[0] = corners[2], window.high[1] = corners[3];
+  // Square cells, some 50,000 of them: what a picture shows.
+  const double width = corners[2] - corners[0], height = corners[3] - corners[1];
+  const double cell = std::sqrt(width * height / 50000);
+  window.columns = std::clamp(static_cast<int>(std::lround(width / cell)), 2, 2000);
+  window.rows = std::clamp(static_cast<int>(std::lround(height / cell)), 2, 2000);
+  return window;
+}
+
+struct MethodMap {
+  std::string name;
+  std::vector<float> gamma, error;
+  double largest = 0, mean = 0;
+};
+
+MethodMap mapOf(const PickedGamma& picked, const std::vector<float>& reference, const Boundary& boundary,
+                const MapWindow& window, ThreadPool& pool) {
+  MethodMap map{picked.name, gammaMap(*picked.method, boundary, window, pool), {}};
+  long count = 0;
+  for (std::size_t k = 0; k < map.gamma.size(); ++k) {
+    map.error.push_back(map.gamma[k] - reference[k]);
+    if (!std::isfinite(map.error.back())) continue;
+    const double size = std::abs(static_cast<double>(map.error.back()));
+    map.largest = std::max(map.largest, size);
+    map.mean += size;
+    ++count;
+  }
+  map.mean /= static_cast<double>(std::max(count, 1L));
+  return map;
+}
+
+std::string mapCsv(const MapWindow& window, const std::vector<float>& reference,
+                   const std::vector<MethodMap>& maps) {
+  std::string text = "x,y,z,reference";
+  for (const MethodMap& map : maps) text += "," + map.name + "," + map.name + "_error";
+  text += '\n';
+  std::size_t k = 0;
+  for (int row = 0; row < window.rows; ++row) {
+    for (int column = 0; column < window.columns; ++column, ++k) {
+      if (!std::isfinite(reference[k])) continue;  // in the solid
+      const Vec3d p = window.point(column, row);
+      char cell[96];
+      std::snprintf(cell, sizeof cell, "%.7g,%.7g,%.7g,%.6f", p.x(), p.y(), p.z(),
+                    static_cast<double>(reference[k]));
+      text += cell;
+      for (const MethodMap& map : maps) {
+        std::snprintf(cell, sizeof cell, ",%.6f,%.6f", static_cast<double>(map.gamma[k]),
+                      static_cast<double>(map.error[k]));
+        text += cell;
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string titled(const char* quantity, const MethodMap& map) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s, %s: largest %.4f, mean %.4f", quantity, map.name.c_str(), map.largest,
+                map.mean);
+  std::string result = text;
+  std::replace(result.begin(), result.end(), '_', ' ');
+  return result;
+}
+
+void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
+  const Boundary boundary(scene.surfaces);
+  if (boundary.empty())
+    throw InputError(options.scene + ":/boundary/surfaces", "expected a wall to map gamma at, found none");
+  const MapWindow window = windowOf(options, scene);
+  const std::filesystem::path folder(options.map);
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  const std::string stem = (folder / (scene.stem() + (options.allMethods ? "_methods" : "_gamma"))).string();
+  requireWritable(stem + ".csv", "--map");
+
+  const GammaContext context = contextOf(scene, boundary);
+  const std::vector<float> reference = gammaMap(*referenceGamma(context).method, boundary, window, pool);
+  std::vector<MethodMap> maps;
+  std::vector<MapPanel> panels;
+  if (options.allMethods) {
+    const auto names = gammaMethodNames();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (names[k] == "monte_carlo") continue;  // hours, for a picture of its noise
+      PickedGamma picked = makeGammaMethod(static_cast<int>(k), context);
+      picked.name = names[k];
+      maps.push_back(mapOf(picked, reference, boundary, window, pool));
+      panels.push_back({titled("error", maps.back()), maps.back().error, true});
+    }
+  } else {
+    maps.push_back(
+        mapOf(makeGammaMethod(scene.boundary.gammaMethod, context), reference, boundary, window, pool));
+    panels.push_back({"γ, " + maps.back().name, maps.back().gamma, false});
+    panels.push_back({titled("error", maps.back()), maps.back().error, true});
+  }
+  writeTextFile(stem + ".csv", mapCsv(window, reference, maps));
+  std::cout << stem << ".csv\n";
+  constexpr double kPaperScale = 0.25;  // the error of Eq. 14 at a right angle: one scale for every picture
+  plotMaps(stem + ".png", window, panels, 3, kPaperScale);
+  std::cout << stem << ".png\n";
+  for (const MethodMap& map : maps)
+    std::printf("%-12s largest error %.4f, mean %.5f\n", map.name.c_str(), map.largest, map.mean);
+}
+
+int gamma(const GammaOptions& options, const CommonOptions& common) {
+  std::vector<Fault> faults;
+  if (options.points.empty() != options.out.empty())
+    faults.push_back(
+        {options.points.empty() ? "--points" : "--out", "expected --points and --out together, found one"});
+  if (options.points.empty() && options.out.empty() && options.map.empty())
+    faults.push_back({"gamma", "expected --points IN.csv --out OUT.csv, or --map DIR, found neither"});
+  if (!faults.empty()) throw InputError(std::move(faults));
+  const Scene scene = readScene(options.scene, common.overrides);
+  ThreadPool pool(common.threads);
+  if (!options.points.empty()) evaluatePoints(options, scene, pool);
+  if (!options.map.empty()) drawMap(options, scene, pool);
+  return kDone;
+}
+
+}  // namespace
+
+Command gammaCommand() {
+  return {
+      "gamma", "Evaluates gamma at points, or maps it and its error on a cut.", [](CLI::App& parser) {
+        const auto options = std::make_shared<GammaOptions>();
+        parser.add_option("scene", options->scene, "The scene file.")->required()->type_name("SCENE");
+        parser
+            .add_option("--points", options->points, "Points to evaluate at: CSV with the columns x,y,z (m).")
+            ->type_name("IN.csv");
+        parser.add_option("--out", options->out, "Their gamma, its gradient (1/m) and the distance (m).")
+            ->type_name("OUT.csv");
+        parser
+            .add_option("--map", options->map,
+                        "Writes a map of gamma and its error on the scene's cut, as CSV and PNG.")
+            ->type_name("DIR");
+        parser.add_option("--window", options->window, "What the map shows, in m; left out: the whole cut.")
+            ->type_name("X0,Y0,X1,Y1");
+        parser.add_flag("--all-methods", options->allMethods, "Maps the error of every method side by side.");
+        return [options](const CommonOptions& common) { return gamma(*options, common); };
+      }};
+}
+
+}  // namespace migiwa
