@@ -42,16 +42,15 @@ std::optional<Number> number(std::string_view text) {
 }  // namespace
 
 std::vector<double> parseTimes(const std::string& text, std::string_view option) {
-  std::vector<double> times;
-  for (const std::string& part : partsAtCommas(text)) {
+  const auto parse = [&](const std::string& part) {
     const std::optional<double> time = number<double>(part);
-    if (!time || !(*time >= 0 && *time <= kLatestTime)) {
-      throw InputError(std::string(option),
-                       "expected numbers in [0, 1e+06] (unit: s) with commas between them, found \"" + part +
-                           "\" in \"" + text + "\"");
-    }
-    times.push_back(*time);
-  }
+    if (time && *time >= 0 && *time <= kLatestTime) return *time;
+    throw InputError(std::string(option),
+                     "expected numbers in [0, 1e+06] (unit: s) with commas between them, found \"" + part +
+                         "\" in \"" + text + "\"");
+  };
+  std::vector<double> times;
+  for (const std::string& part : partsAtCommas(text)) times.push_back(parse(part));
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;

@@ -81,7 +81,7 @@ EGLContext tryContext(EGLDisplay display) {
                                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                          EGL_NONE};
-  const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+  EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
   if (context == EGL_NO_CONTEXT) return context;
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
   eglDestroyContext(display, context);
@@ -91,8 +91,8 @@ EGLContext tryContext(EGLDisplay display) {
 }  // namespace
 
 std::unique_ptr<GlContext> makeEglContext() {
-  for (const EGLDisplay display : candidateDisplays()) {
-    const EGLContext context = tryContext(display);
+  for (EGLDisplay display : candidateDisplays()) {
+    EGLContext context = tryContext(display);
     if (context == EGL_NO_CONTEXT) continue;
     auto result = std::make_unique<EglContext>(display, context);
     loadGl(&eglGetProcAddress);

@@ -15,7 +15,8 @@ LinePass::LinePass(std::span<const LineSegment> lines)
   glVertexArrayBindingDivisor(layout_.name(), 0, 1);
   for (const GLuint end : {0U, 1U}) {
     glEnableVertexArrayAttrib(layout_.name(), end);
-    glVertexArrayAttribFormat(layout_.name(), end, 3, GL_FLOAT, GL_FALSE, end * 3 * sizeof(float));
+    glVertexArrayAttribFormat(layout_.name(), end, 3, GL_FLOAT, GL_FALSE,
+                              static_cast<GLuint>(sizeof(Vec3f)) * end);
     glVertexArrayAttribBinding(layout_.name(), end, 0);
   }
 }

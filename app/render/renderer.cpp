@@ -32,8 +32,8 @@ FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderT
   uniforms.viewport = {static_cast<float>(shot.scene.x),
                        static_cast<float>(target.height() - shot.scene.y - shot.scene.height),
                        static_cast<float>(shot.scene.width), static_cast<float>(shot.scene.height)};
-  for (unsigned i = 0; i < kSamples; ++i) {
-    float* place = uniforms.samples.data() + 2 * i;
+  for (GLuint i = 0; i < kSamples; ++i) {
+    float* place = &uniforms.samples[std::size_t{2} * i];
     glGetMultisamplefv(GL_SAMPLE_POSITION, i, place);
     place[0] -= 0.5F, place[1] -= 0.5F;
   }

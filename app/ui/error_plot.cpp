@@ -24,7 +24,12 @@ struct Plot {
 };
 
 void dashedLine(ImDrawList* draw, ImVec2 from, float toX, ImU32 color) {
-  for (float x = from.x; x < toX; x += 7) draw->AddLine({x, from.y}, {std::min(x + 4, toX), from.y}, color);
+  constexpr float kPeriod = 7, kDash = 4;
+  const int dashes = static_cast<int>(std::ceil((toX - from.x) / kPeriod));
+  for (int i = 0; i < dashes; ++i) {
+    const float x = from.x + kPeriod * static_cast<float>(i);
+    draw->AddLine({x, from.y}, {std::min(x + kDash, toX), from.y}, color);
+  }
 }
 
 }  // namespace

@@ -48,18 +48,20 @@ TEST_P(BadScene, IsRefusedWithTheseMessages) {
   const fs::path file = kBad / (GetParam() + ".json");
   const auto expected = linesOf(std::ifstream(kBad / (GetParam() + ".expected")));
   ASSERT_FALSE(expected.empty()) << "bad/" << GetParam() << ".expected is missing or empty";
-  const auto found = faultsOf(file);
-  ASSERT_FALSE(found.empty()) << "was accepted";
-  std::string all;
-  for (const std::string& line : found) all += line + "\n";
-  ASSERT_EQ(found.size(), expected.size()) << all;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const std::string folder = kBad.string() + "/";
-    ASSERT_TRUE(found[k].starts_with(folder)) << found[k];
-    EXPECT_TRUE(matches(found[k].substr(folder.size()), expected[k]))
-        << "found    " << found[k].substr(folder.size()) << "\nexpected " << expected[k];
+  // Twice: the same messages in the same order every time, but for what free memory they name.
+  for (int reading = 0; reading < 2; ++reading) {
+    const auto found = faultsOf(file);
+    ASSERT_FALSE(found.empty()) << "was accepted";
+    std::string all;
+    for (const std::string& line : found) all += line + "\n";
+    ASSERT_EQ(found.size(), expected.size()) << all;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const std::string folder = kBad.string() + "/";
+      ASSERT_TRUE(found[k].starts_with(folder)) << found[k];
+      EXPECT_TRUE(matches(found[k].substr(folder.size()), expected[k]))
+          << "found    " << found[k].substr(folder.size()) << "\nexpected " << expected[k];
+    }
   }
-  EXPECT_EQ(faultsOf(file), found) << "the same messages in the same order every time";
 }
 
 std::vector<std::string> badScenes() {
