@@ -33,7 +33,7 @@ class Viewer {
   /// The picture of the last frame.
   Image picture() const { return target_->read(); }
   /// Draws a frame that nobody sees or touches; it depends on no earlier one.
-  Image takePicture(const FrameView& frame, const RunStatus& run, int width, int height);
+  Image takePicture(const FrameView& view, const RunStatus& run, int width, int height);
   void copyToWindow() const { target_->copyToWindow(target_->width(), target_->height()); }
 
   const Settings& settings() const { return settings_; }

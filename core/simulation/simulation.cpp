@@ -187,7 +187,13 @@ bool Simulation::stopped() const {
 
 std::vector<LineSegment> Simulation::wireframe() const {
   std::vector<LineSegment> lines;
-  const Bounds bounds = state_->scene.bounds();
+  Bounds bounds = state_->scene.bounds();
+  if (bounds.empty()) {
+    // Nothing finite to go by: what the camera looks at.
+    const Camera& camera = state_->scene.view.camera;
+    bounds.include(camera.target);
+    bounds = bounds.grown(0.4 * (camera.eye - camera.target).norm());
+  }
   for (const auto& surface : state_->scene.surfaces) surface->wireframe(bounds, lines);
   return lines;
 }
