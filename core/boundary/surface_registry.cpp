@@ -1,5 +1,6 @@
 #include <array>
 
+#include "core/base/registry.h"
 #include "core/boundary/box.h"
 #include "core/boundary/plane.h"
 #include "core/boundary/polynomial.h"
@@ -29,12 +30,7 @@ constexpr std::array kShapes{
 }  // namespace
 
 std::span<const std::string_view> surfaceShapes() {
-  static const auto names = [] {
-    std::array<std::string_view, kShapes.size()> result;
-    for (std::size_t k = 0; k < kShapes.size(); ++k) result[k] = kShapes[k].name;
-    return result;
-  }();
-  return names;
+  return registryNames<kShapes>();
 }
 
 std::unique_ptr<Surface> makeSurface(int shape) {

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "core/base/registry.h"
 #include "core/effects/effects.h"
 
 namespace migiwa {
@@ -18,12 +19,7 @@ constexpr std::array kEffects{
 }  // namespace
 
 std::span<const std::string_view> effectNames() {
-  static const auto names = [] {
-    std::array<std::string_view, kEffects.size()> result;
-    for (std::size_t k = 0; k < kEffects.size(); ++k) result[k] = kEffects[k].name;
-    return result;
-  }();
-  return names;
+  return registryNames<kEffects>();
 }
 
 std::unique_ptr<Effect> makeEffect(int effect) {

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "core/base/registry.h"
 #include "core/scene/box_source.h"
 #include "core/scene/sphere_source.h"
 
@@ -7,20 +8,29 @@ namespace migiwa {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kShapes{"box", "sphere"};
-constexpr std::array<std::unique_ptr<FluidSource> (*)(), kShapes.size()> kMakers{
-    []() -> std::unique_ptr<FluidSource> { return std::make_unique<BoxSource>(); },
-    []() -> std::unique_ptr<FluidSource> { return std::make_unique<SphereSource>(); },
+struct Entry {
+  std::string_view name;
+  std::unique_ptr<FluidSource> (*make)();
+};
+
+template <class Source>
+std::unique_ptr<FluidSource> make() {
+  return std::make_unique<Source>();
+}
+
+constexpr std::array kSources{
+    Entry{"box", make<BoxSource>},
+    Entry{"sphere", make<SphereSource>},
 };
 
 }  // namespace
 
 std::span<const std::string_view> fluidShapes() {
-  return kShapes;
+  return registryNames<kSources>();
 }
 
 std::unique_ptr<FluidSource> makeFluidSource(int shape) {
-  return kMakers.at(static_cast<std::size_t>(shape))();
+  return kSources.at(static_cast<std::size_t>(shape)).make();
 }
 
 }  // namespace migiwa

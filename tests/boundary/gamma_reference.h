@@ -39,6 +39,19 @@ inline double massWithin(KernelType type, double r) {
   return quadrature::integrate(0, 0.5, 2, shell) + quadrature::integrate(0.5, r, 2, shell);
 }
 
+/// Cubic Lagrange interpolation of values at 0, 1, 2, ...
+inline double interpolate(const std::vector<double>& values, double at) {
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, static_cast<int>(values.size()) - 4);
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    double weight = 1;
+    for (int j = 0; j < 4; ++j)
+      if (j != i) weight *= (at - (first + j)) / (i - j);
+    sum += weight * values[static_cast<std::size_t>(first + i)];
+  }
+  return sum;
+}
+
 /// massWithin as a table, fine enough for 1e-9.
 class MassTable {
  public:
@@ -47,17 +60,7 @@ class MassTable {
   }
   double operator()(double r) const {
     if (r >= 1) return 1;
-    // Cubic Lagrange over the four nodes around r.
-    const double at = r * kCells;
-    const int first = std::clamp(static_cast<int>(at) - 1, 0, kCells - 3);
-    double sum = 0;
-    for (int i = 0; i < 4; ++i) {
-      double weight = 1;
-      for (int j = 0; j < 4; ++j)
-        if (j != i) weight *= (at - (first + j)) / (i - j);
-      sum += weight * values_[static_cast<std::size_t>(first + i)];
-    }
-    return sum;
+    return interpolate(values_, r * kCells);
   }
 
  private:
@@ -137,18 +140,7 @@ class Wedge {
   }
 
  private:
-  double mass(double r) const {
-    const double at = std::min(r, 1.0) * kCells;
-    const int first = std::clamp(static_cast<int>(at) - 1, 0, kCells - 3);
-    double sum = 0;
-    for (int i = 0; i < 4; ++i) {
-      double weight = 1;
-      for (int j = 0; j < 4; ++j)
-        if (j != i) weight *= (at - (first + j)) / (i - j);
-      sum += weight * values_[static_cast<std::size_t>(first + i)];
-    }
-    return sum;
-  }
+  double mass(double r) const { return interpolate(values_, std::min(r, 1.0) * kCells); }
 
   static constexpr int kCells = 512;
   std::vector<double> values_;

@@ -1,6 +1,7 @@
 // The gamma methods a scene can name.
 #include <array>
 
+#include "core/base/registry.h"
 #include "core/boundary/gamma/gamma_methods.h"
 
 namespace migiwa {
@@ -25,12 +26,7 @@ constexpr std::array kMethods{
 }  // namespace
 
 std::span<const std::string_view> gammaMethodNames() {
-  static const auto names = [] {
-    std::array<std::string_view, kMethods.size()> result;
-    for (std::size_t k = 0; k < kMethods.size(); ++k) result[k] = kMethods[k].name;
-    return result;
-  }();
-  return names;
+  return registryNames<kMethods>();
 }
 
 PickedGamma makeGammaMethod(int index, const GammaContext& context) {
