@@ -5,6 +5,38 @@
 
 namespace migiwa {
 
+namespace {
+
+/// Some ten microseconds.
+constexpr int kLooksBeforeSleep = 400;
+
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#else
+  std::this_thread::yield();
+#endif
+}
+
+/// Whether the condition came true within a short wait that stays awake.
+template <class Condition>
+bool soon(const Condition& condition) {
+  for (int look = 0; look < kLooksBeforeSleep; ++look) {
+    if (condition()) return true;
+    pause();
+  }
+  return false;
+}
+
+std::uint32_t regionOf(std::uint64_t tickets) {
+  return static_cast<std::uint32_t>(tickets >> 32);
+}
+std::uint32_t leftOf(std::uint64_t tickets) {
+  return static_cast<std::uint32_t>(tickets);
+}
+
+}  // namespace
+
 ThreadPool::ThreadPool(int threads) {
   if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   threads = std::min(threads, 256);
@@ -20,29 +52,38 @@ ThreadPool::~ThreadPool() {
   for (std::thread& worker : workers_) worker.join();
 }
 
-void ThreadPool::takeChunks(std::unique_lock<std::mutex>& lock) {
-  while (next_ < chunks_) {
-    const std::size_t chunk = next_++;
-    const auto* task = task_;
-    lock.unlock();
-    std::exception_ptr failure;
+void ThreadPool::takeChunks(std::uint32_t region) {
+  std::uint64_t tickets = tickets_.load();
+  while (regionOf(tickets) == region && leftOf(tickets) > 0) {
+    if (!tickets_.compare_exchange_weak(tickets, tickets - 1)) continue;
+    // This chunk is pending until it is done, so the task of its region stays where it is.
     try {
-      (*task)(chunk);
+      (*task_)(leftOf(tickets) - 1);
     } catch (...) {
-      failure = std::current_exception();
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
     }
-    lock.lock();
-    if (failure && !failure_) failure_ = failure;
-    if (--pending_ == 0) done_.notify_all();
+    if (--pending_ == 0 && callerSleeps_) {
+      const std::lock_guard lock(mutex_);
+      done_.notify_one();
+    }
+    tickets = tickets_.load();
   }
 }
 
 void ThreadPool::work() {
-  std::unique_lock lock(mutex_);
+  std::uint32_t seen = 0;
+  const auto called = [&] { return stop_ || regionOf(tickets_) != seen; };
   while (true) {
-    wake_.wait(lock, [this] { return stop_ || next_ < chunks_; });
+    if (!soon(called)) {
+      std::unique_lock lock(mutex_);
+      ++sleepers_;
+      wake_.wait(lock, called);
+      --sleepers_;
+    }
     if (stop_) return;
-    takeChunks(lock);
+    seen = regionOf(tickets_);
+    takeChunks(seen);
   }
 }
 
@@ -51,16 +92,23 @@ void ThreadPool::run(std::size_t chunks, const std::function<void(std::size_t)>&
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) task(chunk);
     return;
   }
-  std::unique_lock lock(mutex_);
   task_ = &task;
-  next_ = 0;
-  chunks_ = pending_ = chunks;
   failure_ = nullptr;
-  wake_.notify_all();
-  takeChunks(lock);
-  done_.wait(lock, [this] { return pending_ == 0; });
-  chunks_ = next_ = 0;
-  task_ = nullptr;
+  pending_ = chunks;
+  const std::uint32_t region = regionOf(tickets_) + 1;
+  tickets_ = (static_cast<std::uint64_t>(region) << 32) | chunks;
+  if (sleepers_ > 0) {
+    const std::lock_guard lock(mutex_);
+    wake_.notify_all();
+  }
+  takeChunks(region);
+  const auto finished = [this] { return pending_ == 0; };
+  if (!soon(finished)) {
+    std::unique_lock lock(mutex_);
+    callerSleeps_ = true;
+    done_.wait(lock, finished);
+    callerSleeps_ = false;
+  }
   if (failure_) std::rethrow_exception(failure_);
 }
 

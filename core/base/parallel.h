@@ -1,9 +1,11 @@
 // Parallel loops over fixed chunks. The chunks do not depend on the number of threads and every chunk is
 // worked on by one thread, so a result put together from per-chunk results in chunk order is the same for any
-// number of threads. Waiting threads sleep: on a busy machine a spinning pool loses a scheduler slice in
-// every region. Written with standard primitives only, so that the thread sanitizer sees all of it.
+// number of threads. Waiting threads look for work for some microseconds, as long as the next region of a
+// step takes to come, and then sleep: on a busy machine a pool that spins loses a scheduler slice in every
+// region. Written with standard primitives only, so that the thread sanitizer sees all of it.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -30,18 +32,21 @@ class ThreadPool {
 
  private:
   void work();
-  void takeChunks(std::unique_lock<std::mutex>& lock);
+  void takeChunks(std::uint32_t region);
 
   std::vector<std::thread> workers_;
+  /// The number of the region in the upper half, how many of its chunks nobody has taken in the lower: one
+  /// word, so that a thread that comes late can never take a chunk of another region.
+  std::atomic<std::uint64_t> tickets_ = 0;
+  std::atomic<std::size_t> pending_ = 0;
+  std::atomic<int> sleepers_ = 0;
+  std::atomic<bool> callerSleeps_ = false;
+  std::atomic<bool> stop_ = false;
+  const std::function<void(std::size_t)>* task_ = nullptr;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::condition_variable done_;
-  const std::function<void(std::size_t)>* task_ = nullptr;
-  std::size_t next_ = 0;
-  std::size_t chunks_ = 0;
-  std::size_t pending_ = 0;
   std::exception_ptr failure_;
-  bool stop_ = false;
 };
 
 /// Particles a chunk: small enough to balance, large enough that taking one costs nothing.

@@ -112,6 +112,8 @@ void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
                  {"1", "Support radius over particle spacing."});
   visitor.choice("position_step", solver.positionStep, kPositionStepNames,
                  {"", "How lambda becomes a displacement."});
+  visitor.choice("acceleration", solver.acceleration, kAccelerationNames,
+                 {"", "How the iterations are made to converge in fewer."});
   visitor.number("rest_density", solver.restDensity, Range::positive(1e6),
                  {"kg/m^3", "Density of the fluid at rest."});
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/boundary/boundary.h"
-#include "core/sph/neighbour_search.h"
+#include "core/sph/neighbour_lists.h"
 
 namespace migiwa {
 

@@ -39,7 +39,7 @@ long floorGamma(float& gamma) {
 }  // namespace
 
 void evaluateGamma(StepState& state) {
-  const std::size_t n = state.current.size();
+  const std::size_t n = state.particles.size();
   state.gamma.assign(n, 1);
   state.wallSlot.assign(n, StepState::kNoWall);
   state.wallSlots.clear();

@@ -2,75 +2,115 @@
 // taken from the pair kernel, as in Macklin & Mueller 2013, gamma's included. Deviation: the constraint is
 // clamped at zero, for the paper is silent on free surfaces and fluid clumps otherwise.
 #include <algorithm>
-#include <cmath>
 
-#include "core/solver/pair_geometry.h"
 #include "core/solver/stages.h"
-#include "core/sph/kernels.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/solver/lambda_stage.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/solver/pair_vectors-inl.h"
+
+#ifndef MIGIWA_LAMBDA_STAGE_TYPES
+#define MIGIWA_LAMBDA_STAGE_TYPES
 namespace migiwa::stages {
 
-namespace {
+struct ErrorSum {
+  double sum = 0;
+  float max = 0;
+};
+
+}  // namespace migiwa::stages
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace migiwa::HWY_NAMESPACE {
+
+/// What the neighbours of a particle add up to.
+struct NeighbourSums {
+  float covered;        ///< sum of W, the particle itself left out
+  float squaredSlopes;  ///< sum of the squared slopes of the pair kernel
+  Vec3f gradient;       ///< sum of the gradients of the pair kernel, times the support radius
+};
 
 template <class Kernel>
-IterationError lambdaPass(StepState& state) {
-  const std::size_t n = state.current.size();
-  const float inverseSupport = 1 / state.supportRadius;
+HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, std::uint32_t i) {
+  using Density = KernelVectors<Kernel>;
+  using Pair = KernelVectors<PairKernel<Kernel>>;
+  const Pairs d;
+  const PairCentre centre(state.current[i], state.supportRadius, state.particles.id.data(), i);
+  const Float4* const others = state.current.data();
+  PairVector covered = hn::Zero(d), slopes = hn::Zero(d), x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+  const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+  for (std::size_t k = 0; k < list.size(); k += kPairs) {
+    const PairOffsets pair = centre.to(loadComponents(others, &list[k]), &list[k]);
+    covered = hn::Add(covered, Density::value(d, pair.r));
+    const PairVector slope = Pair::slopeOverDistance(d, pair.r);
+    slopes = hn::MulAdd(hn::Mul(slope, slope), pair.r.q2, slopes);
+    x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
+  }
+  const Float4 sums = sumLanes(x, y, z, covered);
+  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz() / state.supportRadius};
+}
+
+template <class Kernel>
+stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t end) {
   const float massRatio = state.lattice.massRatio;
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
-  struct Error {
-    double sum = 0;
-    float max = 0;
-  };
-  const Error error = parallelReduce(
-      state.pool, n, Error{},
-      [&](std::size_t begin, std::size_t end) {
-        Error part;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Float4 at = state.current[i];
-          float covered = Kernel::value(0);
-          float squaredSlopes = 0;
-          Vec3f gradient = Vec3f::Zero();
-          for (const std::uint32_t j : state.neighbours.of(i)) {
-            const PairGeometry pair = pairGeometry(at, state.current[j], inverseSupport,
-                                                   state.particles.id[i], state.particles.id[j]);
-            covered += Kernel::value(pair.q);
-            const float slope = PairKernel<Kernel>::derivative(pair.q);
-            gradient += slope * pair.direction;
-            squaredSlopes += slope * slope;
-          }
-          const float gamma = state.gamma[i];
-          const float density = massRatio * covered / gamma;
-          gradient *= massRatio;
-          if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall)
-            gradient -= density * state.wallSlots[slot].sample.pairGradient;
-          const float inverseGamma = 1 / gamma;
-          const float squaredGradients =
-              (gradient.squaredNorm() + massRatio * massRatio * squaredSlopes) * inverseGamma * inverseGamma;
-          const float constraint = std::max(density - 1, 0.0F);
-          const float lambda = -constraint / (squaredGradients + epsilon);
-          state.density[i] = density;
-          state.lambda[i] = lambda;
-          state.current[i].w = divideByGamma ? lambda * inverseGamma : lambda;
-          part.sum += static_cast<double>(constraint);
-          part.max = std::max(part.max, constraint);
-        }
-        return part;
-      },
-      [](Error a, const Error& b) {
-        return Error{a.sum + b.sum, std::max(a.max, b.max)};
+  stages::ErrorSum error;
+  for (std::size_t i = begin; i < end; ++i) {
+    const NeighbourSums sums = sumNeighbours<Kernel>(state, static_cast<std::uint32_t>(i));
+    const float inverseGamma = 1 / state.gamma[i];
+    const float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
+    const float constraint = std::max(density - 1, 0.0F);
+    float lambda = 0;
+    if (constraint > 0) {
+      Vec3f gradient = massRatio * sums.gradient;
+      if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall)
+        gradient -= density * state.wallSlots[slot].sample.pairGradient;
+      const float squaredGradients =
+          (gradient.squaredNorm() + massRatio * massRatio * sums.squaredSlopes) * inverseGamma * inverseGamma;
+      lambda = -constraint / (squaredGradients + epsilon);
+    }
+    state.density[i] = density;
+    state.lambda[i] = lambda;
+    state.paired[i] = Float4(state.current[i].xyz(), divideByGamma ? lambda * inverseGamma : lambda);
+    error.sum += static_cast<double>(constraint);
+    error.max = std::max(error.max, constraint);
+  }
+  return error;
+}
+
+stages::ErrorSum computeLambdaOfRange(StepState& state, std::size_t begin, std::size_t end) {
+  return withKernel(state.parameters.kernel,
+                    [&](auto kernel) HWY_ATTR { return lambdaOfRange<decltype(kernel)>(state, begin, end); });
+}
+
+}  // namespace migiwa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace migiwa {
+
+HWY_EXPORT(computeLambdaOfRange);
+
+IterationError stages::computeLambda(StepState& state) {
+  const std::size_t n = state.particles.size();
+  state.density.resize(n);
+  state.lambda.resize(n);
+  resizeTight(state.paired, n + 1);
+  state.paired[n] = Float4(state.neighbours.ghost().xyz());
+  const auto ofRange = HWY_DYNAMIC_DISPATCH(computeLambdaOfRange);
+  const ErrorSum error = parallelReduce(
+      state.pool, n, ErrorSum{},
+      [&](std::size_t begin, std::size_t end) { return ofRange(state, begin, end); },
+      [](ErrorSum a, const ErrorSum& b) {
+        return ErrorSum{a.sum + b.sum, std::max(a.max, b.max)};
       });
   return {n > 0 ? error.sum / static_cast<double>(n) : 0, static_cast<double>(error.max)};
 }
 
-}  // namespace
-
-IterationError computeLambda(StepState& state) {
-  state.density.resize(state.current.size());
-  state.lambda.resize(state.current.size());
-  return withKernel(state.parameters.kernel,
-                    [&](auto kernel) { return lambdaPass<decltype(kernel)>(state); });
-}
-
-}  // namespace migiwa::stages
+}  // namespace migiwa
+#endif  // HWY_ONCE

@@ -25,6 +25,10 @@ enum class BoundaryHandling {
 };
 inline constexpr std::array<std::string_view, 2> kHandlingNames{"gamma", "none"};
 
+/// How the iterations are made to converge in fewer.
+enum class Acceleration { chebyshev, none };
+inline constexpr std::array<std::string_view, 2> kAccelerationNames{"chebyshev", "none"};
+
 struct SolverParameters {
   double timeStep = 0.005;  ///< a frame's step (unit: s, range: (0, 1])
   int substeps = 1;         ///< parts that a frame has at least (range: [1, 1000])
@@ -37,6 +41,7 @@ struct SolverParameters {
   double restDensity = 1000;  ///< (unit: kg/m^3)
   KernelType kernel = KernelType::poly6;
   PositionStep positionStep = PositionStep::gradient;
+  Acceleration acceleration = Acceleration::chebyshev;
 };
 
 struct BoundaryParameters {

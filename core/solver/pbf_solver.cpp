@@ -1,10 +1,20 @@
 #include "core/solver/pbf_solver.h"
 
+#include <algorithm>
+
+#include "core/solver/acceleration.h"
 #include "core/solver/stages.h"
 
 namespace migiwa {
 
 namespace {
+
+/// Predicts that every particle stays where it is.
+void takePositions(StepState& state) {
+  const std::vector<Float4>& position = state.particles.position;
+  resizeTight(state.current, position.size() + 1);
+  std::copy(position.begin(), position.end(), state.current.begin());
+}
 
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
@@ -15,12 +25,14 @@ void solveConstraint(StepState& state) {
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
   state.errors.clear();
   state.iterations = 0;
+  Chebyshev chebyshev;
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
     if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
       break;
     if (state.iterations >= parameters.maxIterations) break;
-    state.times.time("position", [&] { stages::movePositions(state); });
+    const float weight = parameters.acceleration == Acceleration::chebyshev ? chebyshev.next() : 1;
+    state.times.time("position", [&] { stages::movePositions(state, weight); });
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });
       if (state.gammaMethod != nullptr)
@@ -65,7 +77,7 @@ long stabilise(StepState& state) {
   constexpr double kCalm = 0.04;
   constexpr int kMostSolves = 30;
   for (int solve = 0; solve < kMostSolves; ++solve) {
-    state.current = particles.position;
+    takePositions(state);
     stages::projectAll(state);
     solveConstraint(state);
     stages::projectAll(state);
@@ -76,7 +88,7 @@ long stabilise(StepState& state) {
 }
 
 void prepareFields(StepState& state) {
-  state.current = state.particles.position;
+  takePositions(state);
   stages::searchNeighbours(state);
   stages::evaluateGamma(state);
   state.errors = {stages::computeLambda(state)};

@@ -3,45 +3,76 @@
 //   dx_i = (m/rho0) sum_j (lambda_i/gamma_i + lambda_j/gamma_j) grad W_ij - lambda_i rho_i/(rho0 gamma_i)
 //   grad gamma_i,
 // whose last term is the wall pushing back; Eq. 10 as printed lets particles crowd the wall.
-#include "core/solver/pair_geometry.h"
 #include "core/solver/stages.h"
-#include "core/sph/kernels.h"
 
-namespace migiwa::stages {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/solver/position_stage.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
-namespace {
+#include "core/solver/pair_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace migiwa::HWY_NAMESPACE {
+
+/// Sum over the neighbours of (w_i + w_j) times the gradient of the pair kernel, times the support radius.
+template <class Kernel>
+HWY_INLINE Vec3f sumPairs(const StepState& state, std::uint32_t i) {
+  using Pair = KernelVectors<PairKernel<Kernel>>;
+  const Pairs d;
+  const Float4 at = state.paired[i];
+  const PairCentre centre(at, state.supportRadius, state.particles.id.data(), i);
+  const PairVector own = hn::Set(d, at.w);
+  const Float4* const others = state.paired.data();
+  PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+  const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+  for (std::size_t k = 0; k < list.size(); k += kPairs) {
+    const Components neighbours = loadComponents(others, &list[k]);
+    const PairOffsets pair = centre.to(neighbours, &list[k]);
+    const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::slopeOverDistance(d, pair.r));
+    x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
+  }
+  return sumLanes(x, y, z, hn::Zero(d)).xyz() / state.supportRadius;
+}
 
 template <class Kernel>
-void positionPass(StepState& state) {
-  const float inverseSupport = 1 / state.supportRadius;
+void moveRange(StepState& state, float weight, std::size_t begin, std::size_t end) {
   const bool wallPush = state.parameters.positionStep != PositionStep::paper;
-  parallelFor(state.pool, state.current.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Float4 at = state.current[i];
-      Vec3f move = Vec3f::Zero();
-      for (const std::uint32_t j : state.neighbours.of(i)) {
-        const Float4 other = state.current[j];
-        const float factor = at.w + other.w;
-        if (factor == 0) continue;
-        const PairGeometry pair =
-            pairGeometry(at, other, inverseSupport, state.particles.id[i], state.particles.id[j]);
-        move += factor * PairKernel<Kernel>::derivative(pair.q) * pair.direction;
-      }
-      move *= state.lattice.massRatio;
-      if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
-        move -=
-            state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
-      state.next[i] = Float4(at.xyz() + state.supportRadius * move, at.w);
+  for (std::size_t i = begin; i < end; ++i) {
+    Vec3f move = state.lattice.massRatio * sumPairs<Kernel>(state, static_cast<std::uint32_t>(i));
+    if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
+      move -= state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
+    Vec3f moved = state.current[i].xyz() + state.supportRadius * move;
+    if (weight != 1) {
+      const Vec3f before = state.previous[i].xyz();
+      moved = before + weight * (moved - before);
     }
-  });
+    state.previous[i] = Float4(moved);
+  }
 }
 
-}  // namespace
-
-void movePositions(StepState& state) {
-  state.next.resize(state.current.size());
-  withKernel(state.parameters.kernel, [&](auto kernel) { positionPass<decltype(kernel)>(state); });
-  state.current.swap(state.next);
+void movePositionsOfRange(StepState& state, float weight, std::size_t begin, std::size_t end) {
+  withKernel(state.parameters.kernel,
+             [&](auto kernel) HWY_ATTR { moveRange<decltype(kernel)>(state, weight, begin, end); });
 }
 
-}  // namespace migiwa::stages
+}  // namespace migiwa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace migiwa {
+
+HWY_EXPORT(movePositionsOfRange);
+
+void stages::movePositions(StepState& state, float weight) {
+  const std::size_t n = state.particles.size();
+  resizeTight(state.previous, n + 1);
+  state.previous[n] = state.current[n];
+  const auto ofRange = HWY_DYNAMIC_DISPATCH(movePositionsOfRange);
+  parallelFor(state.pool, n,
+              [&](std::size_t begin, std::size_t end, std::size_t) { ofRange(state, weight, begin, end); });
+  state.current.swap(state.previous);
+}
+
+}  // namespace migiwa
+#endif  // HWY_ONCE

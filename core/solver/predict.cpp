@@ -4,7 +4,7 @@ namespace migiwa::stages {
 
 void predict(StepState& state) {
   Particles& particles = state.particles;
-  state.current.resize(particles.size());
+  resizeTight(state.current, particles.size() + 1);
   const float dt = state.timeStep;
   const Vec3f gain = dt * state.gravity;
   parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {

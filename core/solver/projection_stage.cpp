@@ -19,7 +19,7 @@ void projectNearWalls(StepState& state) {
 
 void projectAll(StepState& state) {
   if (state.boundary.empty()) return;
-  parallelFor(state.pool, state.current.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) project(state, state.current[i]);
   });
 }

@@ -16,8 +16,9 @@ void evaluateGamma(StepState& state);
 void refreshGamma(StepState& state);
 /// Density ([FM] Eq. 5), constraint (Eq. 9) and lambda (Eqs. 11 to 13). Returns the density error.
 IterationError computeLambda(StepState& state);
-/// Moves the predicted positions by [FM] Eq. 10 in the form that the parameters name.
-void movePositions(StepState& state);
+/// Moves the predicted positions by [FM] Eq. 10 in the form that the parameters name, `weight` times as far
+/// from the positions of the previous iteration (1: Eq. 10 itself).
+void movePositions(StepState& state, float weight = 1);
 /// Puts the particles near walls back on the fluid side.
 void projectNearWalls(StepState& state);
 /// The same for every particle: one that was far from the walls may have crossed one in a single move.

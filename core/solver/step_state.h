@@ -13,7 +13,7 @@
 #include "core/boundary/gamma_method.h"
 #include "core/solver/iteration_error.h"
 #include "core/solver/parameters.h"
-#include "core/sph/neighbour_search.h"
+#include "core/sph/neighbour_lists.h"
 #include "core/sph/resting_lattice.h"
 
 namespace migiwa {
@@ -33,6 +33,13 @@ struct WallSlot {
   GammaSample sample;  ///< at that point
 };
 
+/// Without the room for growth that std::vector would add: at millions of particles it is felt.
+template <class T>
+void resizeTight(std::vector<T>& values, std::size_t size) {
+  values.reserve(size);
+  values.resize(size);
+}
+
 struct StepState {
   StepState(ThreadPool& threadPool, const Boundary& walls) : pool(threadPool), boundary(walls) {}
 
@@ -49,8 +56,11 @@ struct StepState {
   Particles particles;
 
   // Of the current step.
-  std::vector<Float4> current;  ///< predicted position (m); w: the pair factor that Eq. 10 sums
-  std::vector<Float4> next;     ///< the position pass writes here, then swaps with `current`
+  // Those that passes over neighbours read end with the ghost that fills up the neighbour lists.
+  std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
+  std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
+  std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
+  std::vector<std::uint32_t> spareIds;
   CellGrid grid;
   NeighbourLists neighbours;
   std::vector<WallSlot> wallSlots;

@@ -103,6 +103,7 @@ TEST(Step, IterationsEndAtTheToleranceOrTheirLargestNumber) {
   Simulation strict(scene, 1);
   scene.solver.tolerance = 0;
   scene.solver.maxIterations = 7;
+  scene.solver.acceleration = Acceleration::none;  // or the error vanishes altogether before that
   Simulation endless(scene, 1);
   for (int k = 0; k < 20; ++k) {
     strict.advanceFrame();

@@ -1,6 +1,4 @@
 // The neighbour search against brute force.
-#include "core/sph/neighbour_search.h"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -8,6 +6,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "core/sph/neighbour_lists.h"
 
 namespace migiwa {
 namespace {

@@ -1,7 +1,6 @@
-// Distance and direction of a pair, safe for particles that coincide.
+// Which way two particles part that are on one point.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "core/base/types.h"
@@ -26,19 +25,5 @@ inline Vec3f coincidentDirection(std::uint32_t id, std::uint32_t other) {
 
 /// Pairs closer than this many support radii have no direction of their own in float.
 inline constexpr float kCoincident = 1e-5F;
-
-/// q = |a - b| / h and the unit vector from b to a.
-struct PairGeometry {
-  float q;
-  Vec3f direction;
-};
-inline PairGeometry pairGeometry(const Float4& a, const Float4& b, float inverseSupport, std::uint32_t idA,
-                                 std::uint32_t idB) {
-  const Vec3f offset((a.x - b.x) * inverseSupport, (a.y - b.y) * inverseSupport,
-                     (a.z - b.z) * inverseSupport);
-  const float q = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z());
-  if (q > kCoincident) return {q, offset * (1 / q)};
-  return {q, coincidentDirection(idA, idB)};
-}
 
 }  // namespace migiwa

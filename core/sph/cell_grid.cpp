@@ -1,8 +1,8 @@
-#include "core/sph/neighbour_search.h"
+#include "core/sph/cell_grid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace migiwa {
@@ -34,7 +34,7 @@ Box boundingBox(std::span<const Float4> positions, ThreadPool& pool) {
 
 }  // namespace
 
-int CellGrid::cell(float offset, int axis) const {
+int CellGrid::index(float offset, int axis) const {
   // Clamped as float first: a cast of what does not fit an int is undefined.
   const float scaled = std::floor(offset * inverseCell_);
   const auto last = static_cast<float>(size_[axis]);
@@ -64,8 +64,8 @@ void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPo
 
   parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Float4& p = positions[i];
-      keys_[i] = static_cast<std::uint32_t>((cellZ(p.z) * size_[1] + cellY(p.y)) * size_[0] + cellX(p.x));
+      const Cell cell = cellOf(positions[i]);
+      keys_[i] = static_cast<std::uint32_t>((cell.z * size_[1] + cell.y) * size_[0] + cell.x);
     }
   });
 
@@ -82,52 +82,13 @@ void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPo
   start_[cells] = static_cast<std::uint32_t>(n);
 }
 
-std::pair<std::uint32_t, std::uint32_t> CellGrid::row(int x0, int x1, int y, int z) const {
-  if (y < 0 || z < 0 || y >= size_[1] || z >= size_[2]) return {0, 0};
+CellGrid::Places CellGrid::row(int x0, int x1, int y, int z) const {
+  if (y < 0 || z < 0 || y >= size_[1] || z >= size_[2]) return {};
   x0 = std::max(x0, 0);
   x1 = std::min(x1, size_[0] - 1);
-  if (x0 > x1) return {0, 0};
+  if (x0 > x1) return {};
   const auto first = static_cast<std::size_t>((z * size_[1] + y) * size_[0]);
   return {start_[first + static_cast<std::size_t>(x0)], start_[first + static_cast<std::size_t>(x1) + 1]};
-}
-
-void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius,
-                           ThreadPool& pool) {
-  const std::size_t n = positions.size();
-  chunks_.resize(chunkCount(n));
-  start_.resize(n);
-  count_.resize(n);
-  const float radius2 = radius * radius;
-  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    std::vector<std::uint32_t>& list = chunks_[chunk];
-    list.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      const Float4 p = positions[i];
-      start_[i] = static_cast<std::uint32_t>(list.size());
-      const int cx = grid.cellX(p.x), cy = grid.cellY(p.y), cz = grid.cellZ(p.z);
-      for (int z = cz - 1; z <= cz + 1; ++z) {
-        for (int y = cy - 1; y <= cy + 1; ++y) {
-          const auto [from, to] = grid.row(cx - 1, cx + 1, y, z);
-          const std::size_t known = list.size();
-          list.resize(known + (to - from));
-          std::uint32_t* out = list.data() + known;
-          for (std::uint32_t j = from; j < to; ++j) {
-            const float dx = p.x - positions[j].x, dy = p.y - positions[j].y, dz = p.z - positions[j].z;
-            *out = j;
-            out += static_cast<int>(dx * dx + dy * dy + dz * dz < radius2) & static_cast<int>(j != i);
-          }
-          list.resize(static_cast<std::size_t>(out - list.data()));
-        }
-      }
-      count_[i] = static_cast<std::uint32_t>(list.size()) - start_[i];
-    }
-  });
-}
-
-std::size_t NeighbourLists::bytes() const {
-  std::size_t total = (start_.capacity() + count_.capacity()) * sizeof(std::uint32_t);
-  for (const std::vector<std::uint32_t>& chunk : chunks_) total += chunk.capacity() * sizeof(std::uint32_t);
-  return total;
 }
 
 }  // namespace migiwa

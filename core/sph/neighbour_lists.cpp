@@ -1,0 +1,147 @@
+// The lists, several candidates at a time: squared distances of a run of particles that are neighbours in
+// memory, and those within the radius stored without gaps.
+#include "core/sph/neighbour_lists.h"
+
+#include <algorithm>
+
+#ifndef MIGIWA_SORTED_COORDINATES
+#define MIGIWA_SORTED_COORDINATES
+namespace migiwa {
+
+/// The particles' coordinates by themselves, so that vectors of candidates load without a transpose; a group
+/// beyond the last particle may be read.
+struct SortedCoordinates {
+  const float *x, *y, *z;
+  std::uint32_t ghost;  ///< offset of the particle that fills up the lists
+};
+
+}  // namespace migiwa
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/sph/neighbour_lists.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace migiwa::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Appends to `out` the offsets of the neighbours of p, `self` left out, among the candidates in nine rows of
+/// cells. Writes up to one vector beyond the end. Returns the new end.
+HWY_INLINE std::uint32_t* appendNeighbours(const SortedCoordinates& sorted, const CellGrid::Places* rows,
+                                           const Float4& p, float radius2, std::uint32_t self,
+                                           std::uint32_t* HWY_RESTRICT out) {
+  const hn::CappedTag<float, NeighbourLists::kGroup> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const auto px = hn::Set(d, p.x), py = hn::Set(d, p.y), pz = hn::Set(d, p.z);
+  const auto reach = hn::Set(d, radius2);
+  const auto own = hn::Set(du, self), lanes = hn::Iota(du, 0);
+  for (int row = 0; row < 9; ++row) {
+    const auto end = hn::Set(du, rows[row].to);
+    for (std::uint32_t j = rows[row].from; j < rows[row].to; j += static_cast<std::uint32_t>(hn::Lanes(d))) {
+      const auto dx = hn::Sub(px, hn::LoadU(d, sorted.x + j));
+      const auto dy = hn::Sub(py, hn::LoadU(d, sorted.y + j));
+      const auto dz = hn::Sub(pz, hn::LoadU(d, sorted.z + j));
+      const auto squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+      const auto index = hn::Add(lanes, hn::Set(du, j));
+      const auto near = hn::RebindMask(du, hn::Lt(squared, reach));
+      const auto listed = hn::AndNot(hn::Eq(index, own), hn::And(near, hn::Lt(index, end)));
+      hn::StoreU(hn::Compress(hn::ShiftLeft<4>(index), listed), du, out);
+      out += hn::CountTrue(du, listed);
+    }
+  }
+  return out;
+}
+
+/// Appends the lists of the particles [begin, end) of one cell to a chunk with room for all of their
+/// candidates; start and count are those of the first of them.
+void listCell(const SortedCoordinates& sorted, const CellGrid::Places* rows, float radius2,
+              std::uint32_t begin, std::uint32_t end, NeighbourLists::Chunk& chunk, std::uint32_t* start,
+              std::uint32_t* count) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const Float4 p(sorted.x[i], sorted.y[i], sorted.z[i]);
+    std::uint32_t* const list = chunk.offsets.get() + chunk.used;
+    std::uint32_t* const listEnd = appendNeighbours(sorted, rows, p, radius2, i, list);
+    for (std::size_t k = 0; k < NeighbourLists::kGroup; ++k) listEnd[k] = sorted.ghost;
+    const auto found = static_cast<std::uint32_t>(listEnd - list);
+    start[i - begin] = static_cast<std::uint32_t>(chunk.used);
+    count[i - begin] = found;
+    chunk.used += NeighbourLists::wholeGroups(found);
+  }
+}
+
+}  // namespace migiwa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace migiwa {
+
+HWY_EXPORT(listCell);
+
+static_assert(sizeof(Float4) == 16, "offsets are indices shifted by four bits");
+
+void NeighbourLists::Chunk::reserve(std::size_t more) {
+  if (used + more <= capacity) return;
+  capacity = std::max(used + more, capacity + capacity / 4);
+  auto larger = std::make_unique_for_overwrite<std::uint32_t[]>(capacity);
+  std::copy_n(offsets.get(), used, larger.get());
+  offsets = std::move(larger);
+}
+
+void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius,
+                           ThreadPool& pool) {
+  std::vector<Float4> scratch(positions.size() + kScratchExtra);
+  build(grid, positions, radius, scratch, pool);
+}
+
+void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius,
+                           std::span<Float4> scratch, ThreadPool& pool) {
+  const std::size_t n = positions.size();
+  chunks_.resize(chunkCount(n));
+  start_.resize(n);
+  count_.resize(n);
+  const Vec3f outside = grid.origin() - Vec3f::Constant(1e6F * radius);
+  ghost_ = Float4(outside);
+
+  // Loads may run past the last particle by less than a group.
+  const std::size_t stride = n + kGroup;
+  float *x = &scratch.front().x, *y = x + stride, *z = y + stride;
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      x[i] = positions[i].x, y[i] = positions[i].y, z[i] = positions[i].z;
+  });
+  for (std::size_t i = n; i < stride; ++i) x[i] = y[i] = z[i] = 0;
+
+  const SortedCoordinates sorted{x, y, z, static_cast<std::uint32_t>(n * sizeof(Float4))};
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t number) {
+    Chunk& chunk = chunks_[number];
+    chunk.used = 0;
+    const auto last = static_cast<std::uint32_t>(end);
+    for (auto i = static_cast<std::uint32_t>(begin); i < last;) {
+      // The particles of a cell share its rows of candidates.
+      const CellGrid::Cell cell = grid.cellOf(positions[i]);
+      CellGrid::Places rows[9];
+      std::size_t candidates = 0;
+      for (int row = 0; row < 9; ++row) {
+        rows[row] = grid.row(cell.x - 1, cell.x + 1, cell.y + row % 3 - 1, cell.z + row / 3 - 1);
+        candidates += rows[row].to - rows[row].from;
+      }
+      const std::uint32_t cellEnd = std::min(last, grid.places(cell).to);
+      chunk.reserve((cellEnd - i) * (candidates + 2 * kGroup));
+      HWY_DYNAMIC_DISPATCH(listCell)
+      (sorted, rows, radius * radius, i, cellEnd, chunk, &start_[i], &count_[i]);
+      i = cellEnd;
+    }
+  });
+}
+
+std::size_t NeighbourLists::bytes() const {
+  std::size_t total = (start_.capacity() + count_.capacity()) * sizeof(std::uint32_t);
+  for (const Chunk& chunk : chunks_) total += chunk.capacity * sizeof(std::uint32_t);
+  return total;
+}
+
+}  // namespace migiwa
+#endif  // HWY_ONCE

@@ -1,0 +1,67 @@
+// Who is within the support radius of whom, listed for passes that take several neighbours at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <ranges>
+#include <span>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/types.h"
+#include "core/sph/cell_grid.h"
+
+namespace migiwa {
+
+/// Lists of neighbours j != i with |x_i - x_j| < radius, for particles that are already in grid order. A
+/// neighbour is stored as the offset in bytes of its Float4, and every list is filled up to whole groups with
+/// a particle that does not exist, the one after the last: passes over the neighbours need neither an index
+/// computation nor a remainder loop. Arrays of Float4 that passes read by these offsets have that one more
+/// element, at ghost().
+class NeighbourLists {
+ public:
+  /// Neighbours that a pass takes at once.
+  static constexpr std::size_t kGroup = 8;
+
+  static constexpr std::size_t wholeGroups(std::size_t count) {
+    return (count + kGroup - 1) / kGroup * kGroup;
+  }
+
+  /// The lists of a fixed range of particles: ranges are filled independently.
+  struct Chunk {
+    std::unique_ptr<std::uint32_t[]> offsets;
+    std::size_t capacity = 0;
+    std::size_t used = 0;
+    void reserve(std::size_t more);
+  };
+
+  void build(const CellGrid& grid, std::span<const Float4> positions, float radius, ThreadPool& pool);
+  /// The same in borrowed memory: `scratch` has room for the particles, and kScratchExtra more.
+  void build(const CellGrid& grid, std::span<const Float4> positions, float radius, std::span<Float4> scratch,
+             ThreadPool& pool);
+  static constexpr std::size_t kScratchExtra = 2 * kGroup;
+
+  /// Byte offsets of the neighbours of i, filled up to whole groups.
+  std::span<const std::uint32_t> groups(std::size_t i) const {
+    const std::uint32_t* list = chunks_[i / kChunk].offsets.get() + start_[i];
+    return {list, wholeGroups(count_[i])};
+  }
+  /// Indices of the neighbours of i.
+  auto of(std::size_t i) const {
+    return groups(i).first(count_[i]) | std::views::transform([](std::uint32_t offset) {
+             return offset / static_cast<std::uint32_t>(sizeof(Float4));
+           });
+  }
+  std::span<const std::uint32_t> counts() const { return count_; }
+  /// Where the particle that fills up the lists is: out of reach of all others (m).
+  const Float4& ghost() const { return ghost_; }
+  std::size_t bytes() const;
+
+ private:
+  std::vector<Chunk> chunks_;
+  std::vector<std::uint32_t> start_;  ///< of each particle's list within its chunk's
+  std::vector<std::uint32_t> count_;
+  Float4 ghost_;
+};
+
+}  // namespace migiwa
