@@ -139,6 +139,33 @@ void Box::exits(const Vec3f& origin, const Directions& directions, std::span<flo
   for (std::size_t k = 0; k < exits.size(); ++k) exits[k] = crossing(local, directions, k).leave;
 }
 
+float Box::thickness() const {
+  return fluid_ == Fluid::outside ? 2 * half_.minCoeff() : Surface::thickness();
+}
+
+bool Box::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  if (fluid_ == Fluid::inside) return false;
+  const Vec3f start = toLocal(from), way = toLocal(to) - start;
+  float enter = -std::numeric_limits<float>::infinity(), leave = std::numeric_limits<float>::infinity();
+  int face = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way[axis] == 0) {
+      if (std::abs(start[axis]) >= half_[axis]) return false;
+      continue;
+    }
+    const float in = (std::copysign(half_[axis], -way[axis]) - start[axis]) / way[axis];
+    if (in > enter) {
+      enter = in;
+      face = axis;
+    }
+    leave = std::min(leave, (std::copysign(half_[axis], way[axis]) - start[axis]) / way[axis]);
+  }
+  entry = std::max(enter, 0.0F);
+  if (entry >= std::min(leave, 1.0F)) return false;
+  normal = std::copysign(1.0F, -way[face]) * toLocal_.row(face).transpose();
+  return true;
+}
+
 Box::Crossing Box::crossing(const Vec3f& local, const Directions& directions, std::size_t k) const {
   // Slabs: the ray is in the block between the last entry into a pair of faces and the first exit from one.
   const Vec3f w = toLocal_ * Vec3f(directions.x[k], directions.y[k], directions.z[k]);

@@ -79,6 +79,27 @@ void Sphere::exits(const Vec3f& origin, const Directions& directions, std::span<
   }
 }
 
+float Sphere::thickness() const {
+  return fluid_ == Fluid::outside ? 2 * radius_ : Surface::thickness();
+}
+
+bool Sphere::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  if (fluid_ == Fluid::inside) return false;
+  // a t^2 + 2 b t + c = 0 along the way; the roots as in firstHits.
+  const Vec3f start = from - center_, way = to - from;
+  const float a = way.squaredNorm(), b = start.dot(way), length = start.norm();
+  const float c = (length - radius_) * (length + radius_);
+  const float discriminant = b * b - a * c;
+  if (discriminant <= 0 || a == 0) return false;
+  const float root = std::sqrt(discriminant);
+  const float enter = b < 0 ? c / (root - b) : -(root + b) / a,
+              leave = b < 0 ? (root - b) / a : -c / (root + b);
+  entry = std::max(enter, 0.0F);
+  if (entry >= std::min(leave, 1.0F)) return false;
+  normal = (start + entry * way).normalized();
+  return true;
+}
+
 Bounds Sphere::bounds() const {
   Bounds bounds;
   bounds.include(centerExact_);

@@ -69,6 +69,17 @@ class Surface {
     std::fill(exits.begin(), exits.end(), std::numeric_limits<float>::infinity());
   }
 
+  /// The least way through the solid (m), infinite where there is no far side. What lies behind a solid
+  /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
+  /// neighbours across it are none.
+  virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
+  /// Whether the way from one point of the fluid to another passes through the solid; then the unit normal
+  /// where it enters, and how far along the way that is, in [0, 1]. Only for a solid of finite thickness.
+  virtual bool crosses(const Vec3f& /*from*/, const Vec3f& /*to*/, Vec3f& /*normal*/,
+                       float& /*entry*/) const {
+    return false;
+  }
+
   /// Whether the wall is made of planes, and how they combine.
   virtual bool planar() const { return false; }
   virtual PieceRule pieceRule() const { return PieceRule::fluidInsideAll; }
