@@ -18,18 +18,20 @@ namespace migiwa::HWY_NAMESPACE {
 template <class Kernel>
 void smoothRange(StepState& state, const Float4* before, float scale, std::size_t begin, std::size_t end) {
   const Pairs d;
+  const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
   for (std::size_t i = begin; i < end; ++i) {
     const auto own = static_cast<std::uint32_t>(i);
-    const PairCentre centre(positions[i], state.supportRadius, state.particles.id.data(), own);
+    const PairCentre centre(positions[i], pairScale, own);
     const Float4 velocity = before[i];
     const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const Distances<PairVector> r = distances(d, pair.squared);
       const Components others = loadComponents(before, &list[k]);
-      const PairVector value = KernelVectors<Kernel>::value(d, pair.r);
+      const PairVector value = KernelVectors<Kernel>::value(d, r);
       x = hn::MulAdd(value, hn::Sub(others.x, vx), x);
       y = hn::MulAdd(value, hn::Sub(others.y, vy), y);
       z = hn::MulAdd(value, hn::Sub(others.z, vz), z);

@@ -10,6 +10,7 @@
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
 #include "core/solver/pbf_solver.h"
+#include "core/solver/thin_walls.h"
 
 namespace migiwa {
 
@@ -46,6 +47,7 @@ void Simulation::State::configure() {
   step.gravity = scene.gravity.cast<float>();
   step.spacing = static_cast<float>(scene.particleSpacing);
   step.supportRadius = static_cast<float>(scene.supportRadius());
+  step.thinWalls = thinWalls(boundary, step.supportRadius);
   step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
   gamma = {};
   info.handling = "no correction";

@@ -35,23 +35,24 @@ struct NeighbourSums {
 };
 
 template <class Kernel>
-HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, std::uint32_t i) {
+HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const PairScale& scale, std::uint32_t i) {
   using Density = KernelVectors<Kernel>;
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
-  const PairCentre centre(state.current[i], state.supportRadius, state.particles.id.data(), i);
+  const PairCentre centre(state.current[i], scale, i);
   const Float4* const others = state.current.data();
   PairVector covered = hn::Zero(d), slopes = hn::Zero(d), x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const PairOffsets pair = centre.to(loadComponents(others, &list[k]), &list[k]);
-    covered = hn::Add(covered, Density::value(d, pair.r));
-    const PairVector slope = Pair::slopeOverDistance(d, pair.r);
-    slopes = hn::MulAdd(hn::Mul(slope, slope), pair.r.q2, slopes);
+    const Distances<PairVector> r = distances(d, pair.squared);
+    covered = hn::Add(covered, Density::value(d, r));
+    const PairVector slope = Pair::slopeOverDistance(d, r);
+    slopes = hn::MulAdd(hn::Mul(slope, slope), r.q2, slopes);
     x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
   }
   const Float4 sums = sumLanes(x, y, z, covered);
-  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz() / state.supportRadius};
+  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz() * scale.inverseSupport};
 }
 
 template <class Kernel>
@@ -59,9 +60,10 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const float massRatio = state.lattice.massRatio;
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
+  const PairScale scale(state);
   stages::ErrorSum error;
   for (std::size_t i = begin; i < end; ++i) {
-    const NeighbourSums sums = sumNeighbours<Kernel>(state, static_cast<std::uint32_t>(i));
+    const NeighbourSums sums = sumNeighbours<Kernel>(state, scale, static_cast<std::uint32_t>(i));
     const float inverseGamma = 1 / state.gamma[i];
     const float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
     const float constraint = std::max(density - 1, 0.0F);

@@ -11,8 +11,8 @@
 #include <hwy/highway.h>
 
 #include "core/solver/coincident_pair.h"
+#include "core/solver/step_state.h"
 #include "core/sph/kernel_vectors-inl.h"
-#include "core/sph/neighbour_lists.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
@@ -66,57 +66,61 @@ HWY_INLINE Components loadComponents(const Float4* base, const std::uint32_t* HW
 }
 #endif
 
-/// Offsets from the neighbours to the particle (m), and their lengths over the support radius.
+/// Offsets from the neighbours to the particle (m), and their squared lengths over the support radius.
 struct PairOffsets {
-  PairVector x, y, z;
-  Distances<PairVector> r;
+  PairVector x, y, z, squared;
 };
 
-/// Gives pairs on one point the shortest distance that has a direction, and that of their ids.
-HWY_NOINLINE inline void partCoincident(PairOffsets& pair, PairVector& squared, float support,
-                                        float inverseSupport2, const std::uint32_t* ids, std::uint32_t own,
-                                        const std::uint32_t* offsets) {
+/// What all pairs have in common.
+struct PairScale {
+  float support, inverseSupport, inverseSquare;
+  const std::uint32_t* ids;
+
+  explicit PairScale(const StepState& state)
+      : support(state.supportRadius),
+        inverseSupport(1 / support),
+        inverseSquare(inverseSupport * inverseSupport),
+        ids(state.particles.id.data()) {}
+};
+
+/// Gives pairs on one point the shortest distance that has a direction, and that of their ids. By value, so
+/// that the offsets of all other pairs stay in registers.
+HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale& scale, std::uint32_t own,
+                                               const std::uint32_t* offsets) {
   const Pairs d;
   float lanes[4][kPairs];
   hn::StoreU(pair.x, d, lanes[0]), hn::StoreU(pair.y, d, lanes[1]), hn::StoreU(pair.z, d, lanes[2]);
-  hn::StoreU(squared, d, lanes[3]);
+  hn::StoreU(pair.squared, d, lanes[3]);
   for (std::size_t k = 0; k < kPairs; ++k) {
     if (lanes[3][k] >= kCoincident * kCoincident) continue;
-    const Vec3f apart =
-        kCoincident * support * coincidentDirection(ids[own], ids[offsets[k] / sizeof(Float4)]);
-    for (int axis = 0; axis < 3; ++axis) lanes[axis][k] = apart[axis];
-    lanes[3][k] = std::max(apart.squaredNorm() * inverseSupport2, 0.5F * kCoincident * kCoincident);
+    const Vec3f direction = coincidentDirection(scale.ids[own], scale.ids[offsets[k] / sizeof(Float4)]);
+    for (int axis = 0; axis < 3; ++axis) lanes[axis][k] = kCoincident * scale.support * direction[axis];
+    lanes[3][k] = kCoincident * kCoincident;
   }
-  pair.x = hn::LoadU(d, lanes[0]), pair.y = hn::LoadU(d, lanes[1]), pair.z = hn::LoadU(d, lanes[2]);
-  squared = hn::LoadU(d, lanes[3]);
+  return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]), hn::LoadU(d, lanes[3])};
 }
 
-/// The particle that neighbours are paired with.
+/// A particle at `at`, to be paired with its neighbours.
 struct PairCentre {
-  PairVector x, y, z, inverseSupport2;
-  float support, inverseSquare;
-  const std::uint32_t* ids;
+  PairVector x, y, z, inverseSquare;
+  const PairScale& scale;
   std::uint32_t index;
 
-  PairCentre(const Float4& at, float supportRadius, const std::uint32_t* particleIds, std::uint32_t own)
+  HWY_INLINE PairCentre(const Float4& at, const PairScale& pairScale, std::uint32_t own)
       : x(hn::Set(Pairs(), at.x)),
         y(hn::Set(Pairs(), at.y)),
         z(hn::Set(Pairs(), at.z)),
-        inverseSupport2(hn::Set(Pairs(), 1 / (supportRadius * supportRadius))),
-        support(supportRadius),
-        inverseSquare(1 / (supportRadius * supportRadius)),
-        ids(particleIds),
+        inverseSquare(hn::Set(Pairs(), pairScale.inverseSquare)),
+        scale(pairScale),
         index(own) {}
 
   HWY_INLINE PairOffsets to(const Components& others, const std::uint32_t* offsets) const {
     const Pairs d;
-    PairOffsets pair{hn::Sub(x, others.x), hn::Sub(y, others.y), hn::Sub(z, others.z), {}};
-    PairVector squared = hn::Mul(
-        inverseSupport2, hn::MulAdd(pair.x, pair.x, hn::MulAdd(pair.y, pair.y, hn::Mul(pair.z, pair.z))));
-    const auto coincident = hn::Lt(squared, hn::Set(d, kCoincident * kCoincident));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, coincident)))
-      partCoincident(pair, squared, support, inverseSquare, ids, index, offsets);
-    pair.r = distances(d, squared);
+    PairOffsets pair{hn::Sub(x, others.x), hn::Sub(y, others.y), hn::Sub(z, others.z), hn::Zero(d)};
+    pair.squared = hn::Mul(inverseSquare,
+                           hn::MulAdd(pair.x, pair.x, hn::MulAdd(pair.y, pair.y, hn::Mul(pair.z, pair.z))));
+    const auto coincident = hn::Lt(pair.squared, hn::Set(d, kCoincident * kCoincident));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, coincident))) return partCoincident(pair, scale, index, offsets);
     return pair;
   }
 };

@@ -4,6 +4,7 @@
 
 #include "core/solver/acceleration.h"
 #include "core/solver/stages.h"
+#include "core/solver/thin_walls.h"
 
 namespace migiwa {
 
@@ -22,6 +23,7 @@ void takePositions(StepState& state) {
 void solveConstraint(StepState& state) {
   const SolverParameters& parameters = state.parameters;
   state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
+  if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
   state.errors.clear();
   state.iterations = 0;
@@ -90,6 +92,7 @@ long stabilise(StepState& state) {
 void prepareFields(StepState& state) {
   takePositions(state);
   stages::searchNeighbours(state);
+  if (!state.thinWalls.empty()) stages::separateNeighbours(state);
   stages::evaluateGamma(state);
   state.errors = {stages::computeLambda(state)};
 }

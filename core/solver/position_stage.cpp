@@ -17,11 +17,11 @@ namespace migiwa::HWY_NAMESPACE {
 
 /// Sum over the neighbours of (w_i + w_j) times the gradient of the pair kernel, times the support radius.
 template <class Kernel>
-HWY_INLINE Vec3f sumPairs(const StepState& state, std::uint32_t i) {
+HWY_INLINE Vec3f sumPairs(const StepState& state, const PairScale& scale, std::uint32_t i) {
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
   const Float4 at = state.paired[i];
-  const PairCentre centre(at, state.supportRadius, state.particles.id.data(), i);
+  const PairCentre centre(at, scale, i);
   const PairVector own = hn::Set(d, at.w);
   const Float4* const others = state.paired.data();
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
@@ -29,17 +29,19 @@ HWY_INLINE Vec3f sumPairs(const StepState& state, std::uint32_t i) {
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const Components neighbours = loadComponents(others, &list[k]);
     const PairOffsets pair = centre.to(neighbours, &list[k]);
-    const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::slopeOverDistance(d, pair.r));
+    const Distances<PairVector> r = distances(d, pair.squared);
+    const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::slopeOverDistance(d, r));
     x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
   }
-  return sumLanes(x, y, z, hn::Zero(d)).xyz() / state.supportRadius;
+  return sumLanes(x, y, z, hn::Zero(d)).xyz() * scale.inverseSupport;
 }
 
 template <class Kernel>
 void moveRange(StepState& state, float weight, std::size_t begin, std::size_t end) {
   const bool wallPush = state.parameters.positionStep != PositionStep::paper;
+  const PairScale scale(state);
   for (std::size_t i = begin; i < end; ++i) {
-    Vec3f move = state.lattice.massRatio * sumPairs<Kernel>(state, static_cast<std::uint32_t>(i));
+    Vec3f move = state.lattice.massRatio * sumPairs<Kernel>(state, scale, static_cast<std::uint32_t>(i));
     if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
       move -= state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
     Vec3f moved = state.current[i].xyz() + state.supportRadius * move;

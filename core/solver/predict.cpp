@@ -11,12 +11,11 @@ void predict(StepState& state) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f velocity = particles.velocity[i].xyz() + gain;
       particles.velocity[i].setXyz(velocity);
-      Vec3f predicted = particles.position[i].xyz() + dt * velocity;
-      // Projection here rather than after the solve: the density must be that of where particles can be.
-      state.boundary.project(predicted, state.wallMargin());
-      state.current[i] = Float4(predicted);
+      state.current[i] = Float4(Vec3f(particles.position[i].xyz() + dt * velocity));
     }
   });
+  // Here rather than after the solve: the density must be that of where particles can be.
+  projectAll(state);
 }
 
 }  // namespace migiwa::stages

@@ -1,26 +1,33 @@
 #include "core/solver/stages.h"
+#include "core/solver/thin_walls.h"
 
 namespace migiwa::stages {
 
 namespace {
 
-void project(const StepState& state, Float4& position) {
+/// Puts a particle that came from `from` back on the fluid side.
+void project(const StepState& state, const Float4& from, Float4& position) {
   Vec3f p = position.xyz();
-  if (state.boundary.project(p, state.wallMargin())) position.setXyz(p);
+  if (!state.thinWalls.empty()) p = heldBack(state.thinWalls, from.xyz(), p, state.wallMargin());
+  state.boundary.project(p, state.wallMargin());
+  position.setXyz(p);
 }
 
 }  // namespace
 
 void projectNearWalls(StepState& state) {
   parallelFor(state.pool, state.wallSlots.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t k = begin; k < end; ++k) project(state, state.current[state.wallSlots[k].particle]);
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = state.wallSlots[k].particle;
+      project(state, state.previous[i], state.current[i]);
+    }
   });
 }
 
 void projectAll(StepState& state) {
   if (state.boundary.empty()) return;
   parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) project(state, state.current[i]);
+    for (std::size_t i = begin; i < end; ++i) project(state, state.particles.position[i], state.current[i]);
   });
 }
 

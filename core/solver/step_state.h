@@ -45,6 +45,7 @@ struct StepState {
 
   ThreadPool& pool;
   const Boundary& boundary;
+  std::vector<const Surface*> thinWalls;     ///< thinner than the support radius
   const GammaMethod* gammaMethod = nullptr;  ///< null: no correction
   SolverParameters parameters;
   Vec3f gravity = Vec3f::Zero();  ///< (m/s^2)

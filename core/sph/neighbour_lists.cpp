@@ -3,6 +3,7 @@
 #include "core/sph/neighbour_lists.h"
 
 #include <algorithm>
+#include <limits>
 
 #ifndef MIGIWA_SORTED_COORDINATES
 #define MIGIWA_SORTED_COORDINATES
@@ -13,6 +14,12 @@ namespace migiwa {
 struct SortedCoordinates {
   const float *x, *y, *z;
   std::uint32_t ghost;  ///< offset of the particle that fills up the lists
+};
+
+/// The particles of the cells around one cell, one after the other, with their offsets.
+struct Candidates {
+  float *x, *y, *z;
+  std::uint32_t* offset;
 };
 
 }  // namespace migiwa
@@ -28,29 +35,52 @@ namespace migiwa::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Appends to `out` the offsets of the neighbours of p, `self` left out, among the candidates in nine rows of
-/// cells. Writes up to one vector beyond the end. Returns the new end.
-HWY_INLINE std::uint32_t* appendNeighbours(const SortedCoordinates& sorted, const CellGrid::Places* rows,
-                                           const Float4& p, float radius2, std::uint32_t self,
+using Group = hn::CappedTag<float, NeighbourLists::kGroup>;
+
+/// Gathers the particles of nine rows of cells. What fills up the last vector is out of everyone's reach.
+HWY_INLINE std::size_t gatherCandidates(const SortedCoordinates& sorted, const CellGrid::Places* rows,
+                                        const Candidates& candidates) {
+  const Group d;
+  const hn::RebindToUnsigned<Group> du;
+  const auto lanes = hn::Iota(du, 0);
+  std::size_t count = 0;
+  for (int row = 0; row < 9; ++row) {
+    for (std::uint32_t k = 0; k < rows[row].to - rows[row].from;
+         k += static_cast<std::uint32_t>(hn::Lanes(d))) {
+      const std::uint32_t from = rows[row].from + k;
+      hn::StoreU(hn::LoadU(d, sorted.x + from), d, candidates.x + count + k);
+      hn::StoreU(hn::LoadU(d, sorted.y + from), d, candidates.y + count + k);
+      hn::StoreU(hn::LoadU(d, sorted.z + from), d, candidates.z + count + k);
+      hn::StoreU(hn::ShiftLeft<4>(hn::Add(lanes, hn::Set(du, from))), du, candidates.offset + count + k);
+    }
+    count += rows[row].to - rows[row].from;
+  }
+  hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, candidates.x + count);
+  return count;
+}
+
+/// Appends to `out` the offsets of the candidates within the radius of the particle, the particle's own left
+/// out. Writes up to one vector beyond the end. Returns the new end.
+HWY_INLINE std::uint32_t* appendNeighbours(const Candidates& candidates, std::size_t count, const Float4& p,
+                                           float radius2, std::uint32_t ownOffset,
                                            std::uint32_t* HWY_RESTRICT out) {
-  const hn::CappedTag<float, NeighbourLists::kGroup> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
+  const Group d;
+  const hn::RebindToUnsigned<Group> du;
   const auto px = hn::Set(d, p.x), py = hn::Set(d, p.y), pz = hn::Set(d, p.z);
   const auto reach = hn::Set(d, radius2);
-  const auto own = hn::Set(du, self), lanes = hn::Iota(du, 0);
-  for (int row = 0; row < 9; ++row) {
-    const auto end = hn::Set(du, rows[row].to);
-    for (std::uint32_t j = rows[row].from; j < rows[row].to; j += static_cast<std::uint32_t>(hn::Lanes(d))) {
-      const auto dx = hn::Sub(px, hn::LoadU(d, sorted.x + j));
-      const auto dy = hn::Sub(py, hn::LoadU(d, sorted.y + j));
-      const auto dz = hn::Sub(pz, hn::LoadU(d, sorted.z + j));
-      const auto squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-      const auto index = hn::Add(lanes, hn::Set(du, j));
-      const auto near = hn::RebindMask(du, hn::Lt(squared, reach));
-      const auto listed = hn::AndNot(hn::Eq(index, own), hn::And(near, hn::Lt(index, end)));
-      hn::StoreU(hn::Compress(hn::ShiftLeft<4>(index), listed), du, out);
-      out += hn::CountTrue(du, listed);
-    }
+  const auto own = hn::Set(du, ownOffset);
+  const float *const x = candidates.x, *const y = candidates.y, *const z = candidates.z;
+  const std::uint32_t* const offsets = candidates.offset;
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    const auto dx = hn::Sub(px, hn::LoadU(d, x + k));
+    const auto dy = hn::Sub(py, hn::LoadU(d, y + k));
+    const auto dz = hn::Sub(pz, hn::LoadU(d, z + k));
+    const auto squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    const auto offset = hn::LoadU(du, offsets + k);
+    const auto near = hn::RebindMask(du, hn::Lt(squared, reach));
+    const auto listed = hn::AndNot(hn::Eq(offset, own), near);
+    hn::StoreU(hn::Compress(offset, listed), du, out);
+    out += hn::CountTrue(du, listed);
   }
   return out;
 }
@@ -58,12 +88,13 @@ HWY_INLINE std::uint32_t* appendNeighbours(const SortedCoordinates& sorted, cons
 /// Appends the lists of the particles [begin, end) of one cell to a chunk with room for all of their
 /// candidates; start and count are those of the first of them.
 void listCell(const SortedCoordinates& sorted, const CellGrid::Places* rows, float radius2,
-              std::uint32_t begin, std::uint32_t end, NeighbourLists::Chunk& chunk, std::uint32_t* start,
-              std::uint32_t* count) {
+              std::uint32_t begin, std::uint32_t end, const Candidates& candidates,
+              NeighbourLists::Chunk& chunk, std::uint32_t* start, std::uint32_t* count) {
+  const std::size_t candidateCount = gatherCandidates(sorted, rows, candidates);
   for (std::uint32_t i = begin; i < end; ++i) {
     const Float4 p(sorted.x[i], sorted.y[i], sorted.z[i]);
     std::uint32_t* const list = chunk.offsets.get() + chunk.used;
-    std::uint32_t* const listEnd = appendNeighbours(sorted, rows, p, radius2, i, list);
+    std::uint32_t* const listEnd = appendNeighbours(candidates, candidateCount, p, radius2, i << 4U, list);
     for (std::size_t k = 0; k < NeighbourLists::kGroup; ++k) listEnd[k] = sorted.ghost;
     const auto found = static_cast<std::uint32_t>(listEnd - list);
     start[i - begin] = static_cast<std::uint32_t>(chunk.used);
@@ -118,6 +149,8 @@ void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positio
   parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t number) {
     Chunk& chunk = chunks_[number];
     chunk.used = 0;
+    std::vector<float> coordinates;
+    std::vector<std::uint32_t> offsets;
     const auto last = static_cast<std::uint32_t>(end);
     for (auto i = static_cast<std::uint32_t>(begin); i < last;) {
       // The particles of a cell share its rows of candidates.
@@ -128,10 +161,14 @@ void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positio
         rows[row] = grid.row(cell.x - 1, cell.x + 1, cell.y + row % 3 - 1, cell.z + row / 3 - 1);
         candidates += rows[row].to - rows[row].from;
       }
+      const std::size_t room = candidates + kGroup;
+      if (offsets.size() < room) coordinates.resize(3 * room), offsets.resize(room);
       const std::uint32_t cellEnd = std::min(last, grid.places(cell).to);
       chunk.reserve((cellEnd - i) * (candidates + 2 * kGroup));
       HWY_DYNAMIC_DISPATCH(listCell)
-      (sorted, rows, radius * radius, i, cellEnd, chunk, &start_[i], &count_[i]);
+      (sorted, rows, radius * radius, i, cellEnd,
+       {&coordinates[0], &coordinates[room], &coordinates[2 * room], offsets.data()}, chunk, &start_[i],
+       &count_[i]);
       i = cellEnd;
     }
   });

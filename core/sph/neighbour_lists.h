@@ -52,6 +52,18 @@ class NeighbourLists {
              return offset / static_cast<std::uint32_t>(sizeof(Float4));
            });
   }
+  /// Keeps those neighbours j of i for which kept(j). Lists of different particles can be thinned at once.
+  template <class Kept>
+  void keep(std::size_t i, const Kept& kept) {
+    std::uint32_t* const list = chunks_[i / kChunk].offsets.get() + start_[i];
+    const std::uint32_t count = count_[i];
+    std::uint32_t left = 0;
+    for (std::uint32_t k = 0; k < count; ++k)
+      if (kept(list[k] / sizeof(Float4))) list[left++] = list[k];
+    const auto ghost = static_cast<std::uint32_t>(count_.size() * sizeof(Float4));
+    for (std::uint32_t k = left; k < count; ++k) list[k] = ghost;
+    count_[i] = left;
+  }
   std::span<const std::uint32_t> counts() const { return count_; }
   /// Where the particle that fills up the lists is: out of reach of all others (m).
   const Float4& ghost() const { return ghost_; }

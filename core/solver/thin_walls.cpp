@@ -1,0 +1,45 @@
+#include "core/solver/thin_walls.h"
+
+namespace migiwa {
+
+std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRadius) {
+  std::vector<const Surface*> thin;
+  for (const auto& surface : boundary.surfaces())
+    if (surface->thickness() < supportRadius) thin.push_back(surface.get());
+  return thin;
+}
+
+Vec3f heldBack(const std::vector<const Surface*>& walls, const Vec3f& from, const Vec3f& to, float margin) {
+  Vec3f held = to, normal;
+  for (const Surface* wall : walls) {
+    float entry = 0;
+    if (held == from || !wall->crosses(from, held, normal, entry)) continue;
+    Vec3f ignored;
+    if (wall->distance(from, ignored) < 0) continue;
+    const Vec3f meets = from + entry * (held - from);
+    held += (margin - (held - meets).dot(normal)) * normal;
+  }
+  return held;
+}
+
+void stages::separateNeighbours(StepState& state) {
+  const auto seesAllOf = [&](std::size_t i) {
+    Vec3f normal;
+    for (const Surface* wall : state.thinWalls)
+      if (wall->distance(state.current[i].xyz(), normal) < state.supportRadius) return false;
+    return true;
+  };
+  const auto sees = [&](std::size_t i, std::size_t j) {
+    Vec3f normal;
+    float entry = 0;
+    for (const Surface* wall : state.thinWalls)
+      if (wall->crosses(state.current[i].xyz(), state.current[j].xyz(), normal, entry)) return false;
+    return true;
+  };
+  parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (!seesAllOf(i)) state.neighbours.keep(i, [&](std::size_t j) { return sees(i, j); });
+  });
+}
+
+}  // namespace migiwa

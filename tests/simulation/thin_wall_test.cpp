@@ -1,0 +1,105 @@
+// A plate thinner than the support radius: what is on one side knows nothing of the other.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/boundary/box.h"
+#include "core/simulation/simulation.h"
+#include "core/solver/thin_walls.h"
+#include "tests/support/test_scenes.h"
+
+namespace migiwa {
+namespace {
+
+using namespace migiwa::testing;
+
+constexpr double kThickness = 0.025;  // a quarter of the support radius
+constexpr double kSide = 0.4;
+
+/// A tank that a plate parts in two, each side `kSide` wide and filled to its own height (0: empty).
+Scene partedTank(double leftHeight, double rightHeight) {
+  Scene scene = emptyScene();
+  scene.gravity = {0, -9.81, 0};
+  const double width = 2 * kSide + kThickness;
+  if (leftHeight > 0) addFluid(scene, Vec3d::Zero(), {kSide, leftHeight, kSide});
+  if (rightHeight > 0) addFluid(scene, {kSide + kThickness, 0, 0}, {width, rightHeight, kSide});
+  addTank(scene, Vec3d::Zero(), {width, 0.8, kSide});
+  scene.surfaces.push_back(std::make_shared<Box>(Vec3d(kSide, 0, 0), Vec3d(kSide + kThickness, 0.8, kSide),
+                                                 Box::Fluid::outside, Rotation{}));
+  addViscosity(scene);
+  return scene;
+}
+
+constexpr float kPlate = static_cast<float>(kSide + 0.5 * kThickness);
+
+long leftOfPlate(const FrameView& view) {
+  long count = 0;
+  for (const Float4& p : view.positions) count += p.x < kPlate ? 1 : 0;
+  return count;
+}
+
+TEST(ThinWall, NothingPassesUnderAHeadOfWater) {
+  Simulation simulation(partedTank(0.6, 0.15), 2);
+  const long left = leftOfPlate(simulation.view());
+  ASSERT_EQ(left, 8 * 12 * 8);
+  for (int k = 0; k < 300; ++k) {
+    simulation.advanceFrame();
+    ASSERT_EQ(leftOfPlate(simulation.view()), left) << "frame " << k;
+  }
+  EXPECT_EQ(simulation.statistics().maxPenetration, 0);
+  EXPECT_FALSE(simulation.statistics().failed());
+}
+
+TEST(ThinWall, ASideIsAsIfItWereAlone) {
+  // The same number of iterations in both runs, for its choice looks at all particles together.
+  Scene both = partedTank(0.4, 0.3), alone = partedTank(0.4, 0);
+  for (Scene* scene : {&both, &alone})
+    scene->solver.minIterations = scene->solver.maxIterations = 4, scene->solver.tolerance = 0;
+  Simulation parted(both, 1), single(alone, 1);
+  for (int k = 0; k < 5; ++k) {
+    parted.advanceFrame();
+    single.advanceFrame();
+  }
+  // The grid lies differently, so that sums are rounded differently.
+  long compared = 0;
+  for (const Float4& p : parted.view().positions) {
+    if (p.x > kPlate) continue;
+    float nearest = 1;
+    for (const Float4& q : single.view().positions) nearest = std::min(nearest, (p.xyz() - q.xyz()).norm());
+    EXPECT_LT(nearest, 1e-4F * static_cast<float>(kSpacing));
+    ++compared;
+  }
+  EXPECT_EQ(compared, 8 * 8 * 8);
+}
+
+TEST(ThinWall, AFastParticleIsHeldOnTheSideThatItComesFrom) {
+  for (const double speed : {5.0, 50.0, 500.0}) {
+    Scene scene = partedTank(0, 0);
+    scene.gravity.setZero();
+    addFluid(scene, {0.1, 0.2, 0.1}, {0.25, 0.35, 0.25}, {speed, 0.1 * speed, 0});
+    scene.solver.cfl = 0;  // no substeps: the plate is crossed in one move
+    Simulation simulation(scene, 1);
+    for (int k = 0; k < 20; ++k) {
+      simulation.advanceFrame();
+      for (const Float4& p : simulation.view().positions)
+        ASSERT_LE(p.x, static_cast<float>(kSide - 0.5 * kSpacing) + 1e-5F) << speed << " m/s, frame " << k;
+    }
+  }
+}
+
+TEST(ThinWall, AMoveThatIsHeldBackGoesOnAlongTheWall) {
+  const Scene scene = partedTank(0, 0);
+  const Boundary boundary(scene.surfaces);
+  const auto walls = thinWalls(boundary, 0.1F);
+  ASSERT_EQ(walls.size(), 1U);
+  EXPECT_TRUE(thinWalls(boundary, 0.02F).empty()) << "the plate is thicker than that";
+  const Vec3f from(0.37F, 0.2F, 0.1F), to(0.5F, 0.3F, 0.15F);
+  const Vec3f held = heldBack(walls, from, to, 0.025F);
+  EXPECT_NEAR(held.x(), 0.375F, 1e-6F);
+  EXPECT_FLOAT_EQ(held.y(), to.y());
+  EXPECT_FLOAT_EQ(held.z(), to.z());
+  EXPECT_EQ(heldBack(walls, from, Vec3f(0.3F, 0.2F, 0.1F), 0.025F), Vec3f(0.3F, 0.2F, 0.1F));
+}
+
+}  // namespace
+}  // namespace migiwa
