@@ -171,7 +171,11 @@ Box::Crossing Box::crossing(const Vec3f& local, const Directions& directions, st
   const Vec3f w = toLocal_ * Vec3f(directions.x[k], directions.y[k], directions.z[k]);
   Crossing crossing{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
   for (int axis = 0; axis < 3; ++axis) {
-    const float along = std::copysign(std::max(std::abs(w[axis]), 1e-12F), w[axis]);
+    const float along = w[axis];
+    if (std::abs(along) < 1e-9F) {  // along the faces: between them, or not
+      if (std::abs(local[axis]) >= half_[axis]) return {1, 0};
+      continue;
+    }
     crossing.enter = std::max(crossing.enter, (std::copysign(half_[axis], -along) - local[axis]) / along);
     crossing.leave = std::min(crossing.leave, (std::copysign(half_[axis], along) - local[axis]) / along);
   }

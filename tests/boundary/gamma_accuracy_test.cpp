@@ -161,13 +161,11 @@ TEST(GammaAccuracy, Corners) {
                               }),
                  {}};
       for (const Vec3d& p : walls.points) {
-        walls.truth.push_back(reference::overDirections(
-            [&](const Vec3d& w) {
-              double hit = 2;
-              for (const Vec3d& n : normals) hit = std::min(hit, reference::hitOf({n, n.dot(p)}, w));
-              return mass(hit);
-            },
-            20));
+        walls.truth.push_back(reference::overDirections([&](const Vec3d& w) {
+          double hit = 2;
+          for (const Vec3d& n : normals) hit = std::min(hit, reference::hitOf({n, n.dot(p)}, w));
+          return mass(hit);
+        }));
       }
       EXPECT_LE(table(walls, kernel).automatic, 0.01);
     }

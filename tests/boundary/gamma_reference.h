@@ -68,18 +68,77 @@ class MassTable {
   std::vector<double> values_;
 };
 
-/// Any walls: the kernel's mass in the fluid along each direction, averaged over all directions by a rule in
-/// z and in the angle about z with so many panels each. Edges seen from the point limit it to about
-/// 1/panels^2.
+/// Integral of f over [a, b] by Gauss-Legendre panels that halve until both halves agree with their whole
+/// within `tolerance`, which finds the kinks.
+template <class F>
+double adaptive(double a, double b, double tolerance, const F& f) {
+  struct Panel {
+    double from, to, value;
+    int depth;
+  };
+  const auto over = [&](double from, double to) { return quadrature::integrate(from, to, 1, f); };
+  std::vector<Panel> open{{a, b, over(a, b), 0}};
+  double sum = 0;
+  while (!open.empty()) {
+    const Panel panel = open.back();
+    open.pop_back();
+    const double middle = 0.5 * (panel.from + panel.to);
+    const double left = over(panel.from, middle), right = over(middle, panel.to);
+    if (std::abs(left + right - panel.value) < tolerance || panel.depth > 30) {
+      sum += left + right;
+    } else {
+      open.push_back({panel.from, middle, left, panel.depth + 1});
+      open.push_back({middle, panel.to, right, panel.depth + 1});
+    }
+  }
+  return sum;
+}
+
+/// Any walls: the kernel's mass in the fluid along each direction, averaged over all directions. The error is
+/// some ten times the tolerance of a panel.
 template <class FluidMass>
-double overDirections(const FluidMass& fluidMass, int panels) {
-  const double sum = quadrature::integrate(-1, 1, panels, [&](double z) {
+double overDirections(const FluidMass& fluidMass, double tolerance = 1e-7) {
+  const double sum = adaptive(-1, 1, tolerance, [&](double z) {
     const double across = std::sqrt(1 - z * z);
-    return quadrature::integrate(0, 2 * std::numbers::pi, panels, [&](double angle) {
+    const auto at = [&](double angle) {
       return fluidMass(Vec3d(across * std::cos(angle), across * std::sin(angle), z));
-    });
+    };
+    // Four starts, or a narrow feature could hide from the first panel.
+    double ring = 0;
+    for (int quarter = 0; quarter < 4; ++quarter)
+      ring +=
+          adaptive(0.5 * std::numbers::pi * quarter, 0.5 * std::numbers::pi * (quarter + 1), tolerance, at);
+    return ring;
   });
   return sum / (4 * std::numbers::pi);
+}
+
+/// Gradient of a gamma, for support 1: differences of fourth order.
+template <class Gamma>
+Vec3d gradientOf(const Gamma& gamma, const Vec3d& p, double step = 0.02) {
+  Vec3d gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto slope = [&](double by) {
+      return (gamma(p + by * Vec3d::Unit(axis)) - gamma(p - by * Vec3d::Unit(axis))) / (2 * by);
+    };
+    gradient[axis] = (4 * slope(step) - slope(2 * step)) / 3;
+  }
+  return gradient;
+}
+
+/// Where a ray from p enters an upright box; infinite if it does not.
+inline double entryOf(const Vec3d& low, const Vec3d& high, const Vec3d& p, const Vec3d& w) {
+  double enter = 0, leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (w[axis] == 0) {
+      if (p[axis] < low[axis] || p[axis] > high[axis]) return std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const double one = (low[axis] - p[axis]) / w[axis], other = (high[axis] - p[axis]) / w[axis];
+    enter = std::max(enter, std::min(one, other));
+    leave = std::min(leave, std::max(one, other));
+  }
+  return enter < leave ? enter : std::numeric_limits<double>::infinity();
 }
 
 /// Inside all of some planes n.x + c >= 0 (concave) for a point at the origin.

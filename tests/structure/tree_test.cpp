@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 bool isText(const fs::path& path) {
   const std::string name = path.filename().string();
-  for (const char* ending : {".h", ".cpp", ".cmake", ".txt", ".glsl", ".vert", ".frag"})
+  for (const char* ending : {".h", ".inl", ".cpp", ".cmake", ".txt", ".glsl", ".vert", ".frag"})
     if (name.ends_with(ending)) return true;
   return false;
 }

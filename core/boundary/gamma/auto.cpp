@@ -1,10 +1,14 @@
 // Picks the method at every point by the walls in reach there:
 //   planes at right angles, or one alone   product     closed forms
 //   two planes at any other angle          copula
-//   three or more of those, curved walls   directions
+//   three or more of those, curved walls,
+//   the rims of thin ones                  directions
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
+#include "core/boundary/gamma/flat_planes.h"
 #include "core/boundary/gamma/gamma_methods.h"
 #include "core/boundary/gamma/half_spaces.h"
 
@@ -19,12 +23,35 @@ class AutoGamma final : public GammaMethod {
   explicit AutoGamma(const GammaContext& context)
       : boundary_(context.boundary),
         support_(context.supportRadius),
+        flat_(FlatPlanes::of(boundary_, support_)),
         methods_{makeProductGamma(context), makeCopulaGamma(context), makeDirectionsGamma(fine(context))} {}
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    if (flat_) {
+      methods_[kProduct]->evaluate(points, out);
+      if (flat_->rightAngled()) return;
+    }
+    // Gathered by method, so that each has a batch.
+    std::array<std::vector<std::size_t>, 3> picked;
     HalfSpaces walls;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      methods_[pick(points[i].xyz(), walls)]->evaluate(points.subspan(i, 1), out.subspan(i, 1));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!flat_) {
+        picked[pick(points[i].xyz(), walls)].push_back(i);
+      } else if (flat_->obliqueAt(points[i].xyz())) {
+        flat_->inReach(points[i].xyz(), walls.tanks);
+        picked[ofPlanes(walls.tanks)].push_back(i);
+      }
+    }
+    std::vector<Float4> at;
+    std::vector<GammaSample> samples;
+    for (std::size_t method = 0; method < picked.size(); ++method) {
+      if (picked[method].empty()) continue;
+      at.clear();
+      for (const std::size_t i : picked[method]) at.push_back(points[i]);
+      samples.resize(at.size());
+      methods_[method]->evaluate(at, samples);
+      for (std::size_t k = 0; k < at.size(); ++k) out[picked[method][k]] = samples[k];
+    }
   }
 
   GammaChoice choice() const override {
@@ -37,6 +64,12 @@ class AutoGamma final : public GammaMethod {
     if (!planar)
       return {"product, copula, directions",
               "by the walls in reach of each particle: planes and curved walls"};
+    if (std::any_of(surfaces.begin(), surfaces.end(),
+                    [this](const auto& s) { return s->thickness() < support_; }))
+      return {
+          "product, copula, directions",
+          "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
+          "radius"};
     if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
     return {"product, copula, directions",
             "by the walls in reach of each particle: planes at various angles"};
@@ -72,6 +105,7 @@ class AutoGamma final : public GammaMethod {
       if (surface->distance(p, normal) < support_) return kDirections;
     }
     walls.collect(boundary_, p, support_);
+    if (walls.thinRim) return kDirections;
     Pick most = ofPlanes(walls.tanks);
     for (const std::vector<HalfSpace>& block : walls.blocks) most = std::max(most, ofPlanes(block));
     return most;
@@ -94,6 +128,7 @@ class AutoGamma final : public GammaMethod {
 
   const Boundary& boundary_;
   float support_;
+  std::optional<FlatPlanes> flat_;
   std::unique_ptr<GammaMethod> methods_[3];
 };
 

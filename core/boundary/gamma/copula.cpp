@@ -54,6 +54,7 @@ KernelPart three(const Variable& a, const Variable& b, const Variable& c) {
 }
 
 struct Copula {
+  static constexpr bool kOblique = true;
   static KernelPart intersection(std::vector<KernelPart>& parts) {
     if (parts.empty()) return {1, Vec3f::Zero(), Vec3f::Zero()};
     if (parts.size() == 1) return parts.front();

@@ -1,51 +1,31 @@
 // gamma by fixed directions: the mass of the kernel up to the first hit of each ray with any wall, averaged,
 //   gamma = mean G(g_k / h),   h grad gamma = 4 pi mean [H(g_k / h) - H(1)] w_k,
-// and, behind a block that a ray has passed, what is fluid again: [FM] Eq. 7 with a g of every direction, for
-// any shape of wall and any number of them. Where every wall in reach is made of planes, the closed form of
-// the nearest plane takes the place of its own part of the sum: exact on one plane, and half the mean error
-// near edges. On curved walls that would be worse than leaving it.
+// and, behind a thick block that a ray has passed, what is fluid again: [FM] Eq. 7 with a g of every
+// direction, for any shape of wall and any number of them. Where every wall in reach is made of planes, the
+// closed form of the nearest plane takes the place of its own part of the sum: exact on one plane, and half
+// the mean error near edges. On curved walls that would be worse than leaving it.
 #include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <optional>
 
+#include "core/boundary/gamma/flat_planes.h"
 #include "core/boundary/gamma/gamma_methods.h"
+#include "core/boundary/gamma/ray_sums.h"
 #include "core/boundary/plane_hits.h"
 #include "core/sph/kernels.h"
-#include "core/sph/radial_integrals.h"
 
 namespace migiwa {
 
 namespace {
-
-/// Four floats, a vector of the compiler's: every x86-64 has it, so the order of summation is the same
-/// everywhere.
-using Lanes = float __attribute__((vector_size(16)));
-constexpr std::size_t kLanes = 4;
-
-Lanes load(const float* values) {
-  Lanes lanes;
-  std::memcpy(&lanes, values, sizeof lanes);
-  return lanes;
-}
-
-float total(const Lanes& lanes) {
-  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-}
-
-/// Sums over directions: of the mass, and of the slopes of the density and the pair kernel times the
-/// direction.
-struct RaySums {
-  Lanes mass{}, x{}, y{}, z{}, pairX{}, pairY{}, pairZ{};
-};
 
 template <class Kernel>
 class DirectionsGamma final : public GammaMethod {
  public:
   explicit DirectionsGamma(const GammaContext& context)
       : boundary_(context.boundary),
+        kernel_(context.kernel),
         support_(context.supportRadius),
-        // Whole groups of lanes: no loop needs a tail.
-        directions_(fibonacciDirections((context.directions + 3) / 4 * 4)) {}
+        directions_(groupedDirections(context.directions)),
+        flat_(FlatPlanes::of(boundary_, support_)) {}
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     Scratch scratch;
@@ -69,76 +49,82 @@ class DirectionsGamma final : public GammaMethod {
   using Pair = PairKernel<Kernel>;
 
   struct Scratch {
+    std::vector<HalfSpace> planes;
+    std::vector<const Surface*> near;
     std::vector<float> hits, enter, leave;
   };
 
+  /// Whether fluid behind the solid counts: not behind a thin one.
+  bool passable(const Surface& surface) const {
+    return surface.reentrant() && surface.thickness() >= support_;
+  }
+
   void atFluidPoint(const Vec3f& p, float distance, const Vec3f& normal, Scratch& scratch,
                     GammaSample& sample) const {
-    const std::size_t count = directions_.size();
+    if (flat_) {
+      flat_->inReach(p, scratch.planes);
+      if (scratch.planes.empty()) return;  // at the support radius but for rounding
+      std::iter_swap(scratch.planes.begin(),
+                     std::min_element(scratch.planes.begin(), scratch.planes.end(),
+                                      [](const HalfSpace& a, const HalfSpace& b) { return a.e < b.e; }));
+      RaySums rest;
+      if (scratch.planes.size() > 1) rest = beyondFirstPlane(kernel_, directions_, scratch.planes);
+      return finish(rest, &scratch.planes.front(), sample);
+    }
+
     std::vector<float>& hits = scratch.hits;
-    hits.assign(count, support_);
+    hits.assign(directions_.size(), support_);
+    scratch.near.clear();
     bool planar = true;
     for (const auto& surface : boundary_.surfaces()) {
       Vec3f ignored;
       if (surface->distance(p, ignored) >= support_) continue;
+      scratch.near.push_back(surface.get());
       planar = planar && surface->planar();
-      if (!surface->reentrant()) surface->firstHits(p, directions_, hits);
+      if (!passable(*surface)) surface->firstHits(p, directions_, hits);
     }
     RaySums sums;
-    addRays<1>(hits, sums);
-    for (const auto& surface : boundary_.surfaces()) {
-      Vec3f ignored;
-      if (!surface->reentrant() || surface->distance(p, ignored) >= support_) continue;
+    addRays(kernel_, directions_, hits, support_, 1, sums);
+    for (const Surface* surface : scratch.near) {
+      if (!passable(*surface)) continue;
       // The rays' way through the block is taken out; behind it they go on up to the tank's wall.
       scratch.enter = hits;
-      scratch.leave.resize(count);
+      scratch.leave.resize(hits.size());
       surface->firstHits(p, directions_, scratch.enter);
       surface->exits(p, directions_, scratch.leave);
-      for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t k = 0; k < hits.size(); ++k)
         scratch.leave[k] = scratch.enter[k] < hits[k] ? std::min(scratch.leave[k], hits[k]) : hits[k];
-      addRays<1>(scratch.enter, sums);
-      addRays<-1>(scratch.leave, sums);
+      addRays(kernel_, directions_, scratch.enter, support_, 1, sums);
+      addRays(kernel_, directions_, scratch.leave, support_, -1, sums);
     }
-    float gamma = 0;
-    Vec3f gradient = Vec3f::Zero(), pairGradient = Vec3f::Zero();
-    if (planar) {
-      hits.assign(count, support_);
-      hitPlane(normal, distance, directions_, hits);
-      addRays<-1>(hits, sums);
-      const float e = distance / support_;
-      gamma = Kernel::planeGamma(e);
-      gradient = Kernel::planeGammaSlope(e) * normal;
-      pairGradient = Pair::planeGammaSlope(e) * normal;
-    }
-    const float mean = 1 / static_cast<float>(count);
-    const float scale = 4 * kernel_detail::kPi * mean;
-    sample.gamma = std::clamp(gamma + mean * total(sums.mass), 0.0F, 1.0F);
-    sample.gradient = gradient + scale * Vec3f(total(sums.x), total(sums.y), total(sums.z));
-    sample.pairGradient =
-        pairGradient + scale * Vec3f(total(sums.pairX), total(sums.pairY), total(sums.pairZ));
+    if (!planar) return finish(sums, nullptr, sample);
+    hits.assign(hits.size(), support_);
+    hitPlane(normal, distance, directions_, hits);
+    addRays(kernel_, directions_, hits, support_, -1, sums);
+    const HalfSpace nearest{normal, distance / support_};
+    finish(sums, &nearest, sample);
   }
 
-  template <int Sign>
-  void addRays(const std::vector<float>& hits, RaySums& sums) const {
-    const float inverseSupport = 1 / support_;
-    const float full = RadialIntegrals<Kernel>::slope(1.0F), pairFull = RadialIntegrals<Pair>::slope(1.0F);
-    RaySums local = sums;
-    for (std::size_t k = 0; k < hits.size(); k += kLanes) {
-      const Lanes scaled = load(&hits[k]) * inverseSupport;
-      const Lanes r = scaled < 1.0F ? scaled : Lanes{} + 1.0F;
-      const Lanes x = load(&directions_.x[k]), y = load(&directions_.y[k]), z = load(&directions_.z[k]);
-      const Lanes slope = static_cast<float>(Sign) * (RadialIntegrals<Kernel>::slope(r) - full);
-      const Lanes pairSlope = static_cast<float>(Sign) * (RadialIntegrals<Pair>::slope(r) - pairFull);
-      local.mass += static_cast<float>(Sign) * RadialIntegrals<Kernel>::mass(r);
-      local.x += slope * x, local.y += slope * y, local.z += slope * z;
-      local.pairX += pairSlope * x, local.pairY += pairSlope * y, local.pairZ += pairSlope * z;
+  /// The sums' means, and the closed form of a plane whose part is not in them.
+  void finish(const RaySums& sums, const HalfSpace* plane, GammaSample& sample) const {
+    const float mean = 1 / static_cast<float>(directions_.size());
+    const float scale = 4 * kernel_detail::kPi * mean;
+    sample.gamma = mean * sums.mass;
+    sample.gradient = scale * sums.slope;
+    sample.pairGradient = scale * sums.pairSlope;
+    if (plane != nullptr) {
+      sample.gamma += Kernel::planeGamma(plane->e);
+      sample.gradient += Kernel::planeGammaSlope(plane->e) * plane->normal;
+      sample.pairGradient += Pair::planeGammaSlope(plane->e) * plane->normal;
     }
-    sums = local;
+    sample.gamma = std::clamp(sample.gamma, 0.0F, 1.0F);
   }
 
   const Boundary& boundary_;
+  KernelType kernel_;
   float support_;
   Directions directions_;
+  std::optional<FlatPlanes> flat_;
 };
 
 }  // namespace

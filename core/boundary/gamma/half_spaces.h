@@ -1,7 +1,9 @@
 // The planar walls in reach of a point as half-spaces. The fluid is the intersection of the tanks'
 // half-spaces less the blocks, each an intersection of its own:
 //   gamma = P(tanks) - sum over blocks of P(tanks and block),
-// where P is the part of the kernel inside all half-spaces of a set. Blocks do not overlap each other.
+// where P is the part of the kernel inside all half-spaces of a set. Blocks do not overlap each other. A
+// block thinner than the support radius reaches back without end behind the faces that the point sees: what
+// it hides does not count. That is exact but near its rim.
 #pragma once
 
 #include <span>
@@ -19,18 +21,23 @@ struct HalfSpace {
 
 struct HalfSpaces {
   std::vector<HalfSpace> tanks;
+  /// Each with the tanks' half-spaces.
   std::vector<std::vector<HalfSpace>> blocks;
+  /// Whether the rim of a thin block is in reach, where what it hides is no intersection of half-spaces.
+  bool thinRim = false;
 
   /// Takes the planar pieces of the surfaces that are nearer than the support radius.
   void collect(const Boundary& boundary, const Vec3f& p, float supportRadius);
 
  private:
+  void addBlock(bool thin, float inverseSupport);
+
   std::vector<WallPiece> pieces_;
 };
 
 /// Adds a half-space to an intersection: of two that look the same way, the narrower counts, or coplanar
-/// walls would count twice.
-void intersect(std::vector<HalfSpace>& set, const HalfSpace& added);
+/// walls would count twice. Returns whether the one added counts.
+bool intersect(std::vector<HalfSpace>& set, const HalfSpace& added);
 
 /// The part of a kernel inside one half-space, or between two that face each other.
 struct KernelPart {

@@ -18,6 +18,8 @@ class MonteCarloGamma final : public GammaMethod {
  public:
   explicit MonteCarloGamma(const GammaContext& context)
       : boundary_(context.boundary), support_(context.supportRadius) {
+    for (const auto& surface : boundary_.surfaces())
+      if (surface->thickness() < support_) thin_.push_back(surface.get());
     // 1/g, 1/g^2, 1/g^3 for the real root g of g^4 = g + 1.
     constexpr double kGolden = 1.2207440846057596;
     double a = 0.5, b = 0.5, c = 0.5;
@@ -45,7 +47,7 @@ class MonteCarloGamma final : public GammaMethod {
       long solid = 0;
       Vec3d gradient = Vec3d::Zero(), pairGradient = Vec3d::Zero();
       for (const Sample& sample : samples_) {
-        if (boundary_.distance(p + support_ * sample.offset) >= 0) continue;
+        if (sees(p, p + support_ * sample.offset)) continue;
         ++solid;
         gradient -= sample.slope.template cast<double>();
         pairGradient -= sample.pairSlope.template cast<double>();
@@ -63,6 +65,15 @@ class MonteCarloGamma final : public GammaMethod {
     Vec3f slope, pairSlope;  ///< what it adds to h grad gamma, with the number of samples still to divide by
   };
 
+  /// Whether a place is fluid, and not hidden by a thin wall.
+  bool sees(const Vec3f& p, const Vec3f& place) const {
+    Vec3f normal;
+    float entry = 0;
+    return boundary_.distance(place) >= 0 &&
+           std::none_of(thin_.begin(), thin_.end(),
+                        [&](const Surface* thin) { return thin->crosses(p, place, normal, entry); });
+  }
+
   static float radiusOfMass(float mass) {
     float low = 0, high = 1;
     for (int step = 0; step < 30; ++step) {
@@ -74,6 +85,7 @@ class MonteCarloGamma final : public GammaMethod {
 
   const Boundary& boundary_;
   float support_;
+  std::vector<const Surface*> thin_;
   std::vector<Sample> samples_;
 };
 

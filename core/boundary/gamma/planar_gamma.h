@@ -2,38 +2,62 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 
+#include "core/boundary/gamma/flat_planes.h"
 #include "core/boundary/gamma/half_spaces.h"
+#include "core/boundary/gamma/product_lanes.h"
 #include "core/boundary/gamma_method.h"
 #include "core/sph/kernels.h"
 
 namespace migiwa {
 
 /// `Combine` takes the parts of a kernel along the axes of an intersection and returns the part inside all of
-/// them.
+/// them. At right angles that is their product; kOblique: at other angles it is something else.
 template <class Kernel, class Combine>
 class PlanarGamma final : public GammaMethod {
  public:
   explicit PlanarGamma(const GammaContext& context)
-      : boundary_(context.boundary), support_(context.supportRadius) {}
+      : boundary_(context.boundary),
+        kernel_(context.kernel),
+        support_(context.supportRadius),
+        flat_(FlatPlanes::of(boundary_, support_)) {}
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     HalfSpaces walls;
     std::vector<KernelPart> parts;
+    if (flat_) {
+      productOfPlanes(*flat_, kernel_, support_, points, out);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3f p = points[i].xyz();
+        if (out[i].distance < 0) out[i].distance = boundary_.distance(p);
+        if (!Combine::kOblique || !flat_->obliqueAt(p)) continue;
+        flat_->inReach(p, walls.tanks);
+        combine(walls, parts, out[i]);
+      }
+      return;
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3f p = points[i].xyz();
       out[i] = GammaSample{};
       out[i].distance = boundary_.distance(p);
       if (out[i].distance >= support_) continue;
       walls.collect(boundary_, p, support_);
-      const KernelPart fluid = fluidPart<Kernel>(walls, parts);
-      out[i].gamma = std::clamp(fluid.value, 0.0F, 1.0F);
-      out[i].gradient = fluid.gradient;
-      out[i].pairGradient = fluidPart<PairKernel<Kernel>>(walls, parts).gradient;
+      combine(walls, parts, out[i]);
     }
   }
 
  private:
+  static void combine(const HalfSpaces& walls, std::vector<KernelPart>& parts, GammaSample& sample) {
+    using Pair = PairKernel<Kernel>;
+    const KernelPart fluid = fluidPart<Kernel>(walls, parts);
+    sample.gamma = std::clamp(fluid.value, 0.0F, 1.0F);
+    sample.gradient = fluid.gradient;
+    sample.pairGradient =
+        std::is_same_v<Kernel, Pair> ? fluid.gradient : fluidPart<Pair>(walls, parts).gradient;
+  }
+
   template <class K>
   static KernelPart fluidPart(const HalfSpaces& walls, std::vector<KernelPart>& parts) {
     kernelParts<K>(walls.tanks, parts);
@@ -48,7 +72,9 @@ class PlanarGamma final : public GammaMethod {
   }
 
   const Boundary& boundary_;
+  KernelType kernel_;
   float support_;
+  std::optional<FlatPlanes> flat_;
 };
 
 template <class Combine>

@@ -8,6 +8,7 @@ namespace migiwa {
 namespace {
 
 struct Product {
+  static constexpr bool kOblique = false;
   static KernelPart intersection(std::span<const KernelPart> parts) {
     KernelPart product{1, Vec3f::Zero(), Vec3f::Zero()};
     for (const KernelPart& part : parts) {

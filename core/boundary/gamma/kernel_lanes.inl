@@ -1,0 +1,166 @@
+// The closed forms of core/sph/kernels.h and core/sph/radial_integrals.h over vectors of Highway, for support
+// 1. Included once for every instruction set, so without #pragma once.
+#if defined(MIGIWA_KERNEL_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef MIGIWA_KERNEL_LANES
+#undef MIGIWA_KERNEL_LANES
+#else
+#define MIGIWA_KERNEL_LANES
+#endif
+
+#include <hwy/highway.h>
+
+#include "core/sph/kernel_type.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace migiwa::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr float kPiF = 3.14159265358979F;
+
+template <class D, class V>
+HWY_INLINE V horner(D d, V x, float c0, float c1) {
+  return hn::MulAdd(hn::Set(d, c1), x, hn::Set(d, c0));
+}
+/// c0 + c1 x + c2 x^2 + ...
+template <class D, class V, class... Rest>
+HWY_INLINE V horner(D d, V x, float c0, float c1, Rest... rest) {
+  return hn::MulAdd(horner(d, x, c1, rest...), x, hn::Set(d, c0));
+}
+
+// Each kernel: taken(e), the part of it beyond a plane at e in [0, 1]; push(e) = -d taken / de; mass(r) =
+// G(r) and slope(r) = H(r) - H(1) of METHOD's radial integrals, r in [0, 1].
+
+struct Poly6Lanes {
+  template <class D, class V>
+  static HWY_INLINE V taken(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    return hn::Mul(hn::Mul(hn::Mul(t2, t2), t),
+                   horner(d, e, 0.5F, 325.0F / 256, 345.0F / 256, 175.0F / 256, 35.0F / 256));
+  }
+  template <class D, class V>
+  static HWY_INLINE V push(D d, V e) {
+    const V u = hn::NegMulAdd(e, e, hn::Set(d, 1.0F)), u2 = hn::Mul(u, u);
+    return hn::Mul(hn::Set(d, 315.0F / 256), hn::Mul(u2, u2));
+  }
+  template <class D, class V>
+  static HWY_INLINE V mass(D d, V r) {
+    const V r2 = hn::Mul(r, r);
+    return hn::Mul(hn::Mul(r, r2), horner(d, r2, 105.0F / 16, -189.0F / 16, 135.0F / 16, -35.0F / 16));
+  }
+  template <class D, class V>
+  static HWY_INLINE V slope(D d, V r) {
+    constexpr float c = 315 / (256 * kPiF);
+    const V r2 = hn::Mul(r, r);
+    return hn::MulAdd(hn::Mul(r2, r2), horner(d, r2, 6 * c, -8 * c, 3 * c), hn::Set(d, -c));
+  }
+};
+
+struct SpikyLanes {
+  template <class D, class V>
+  static HWY_INLINE V taken(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    return hn::Mul(hn::Mul(hn::Mul(t2, t2), t), hn::Add(hn::Set(d, 0.5F), e));
+  }
+  template <class D, class V>
+  static HWY_INLINE V push(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    return hn::Mul(hn::Mul(t2, t2), horner(d, e, 1.5F, 6.0F));
+  }
+  template <class D, class V>
+  static HWY_INLINE V mass(D d, V r) {
+    return hn::Mul(hn::Mul(hn::Mul(r, r), r), horner(d, r, 20.0F, -45.0F, 36.0F, -10.0F));
+  }
+  template <class D, class V>
+  static HWY_INLINE V slope(D d, V r) {
+    constexpr float c = 1.5F / kPiF;
+    return hn::MulAdd(hn::Mul(hn::Mul(r, r), r), horner(d, r, 10 * c, -15 * c, 6 * c), hn::Set(d, -c));
+  }
+};
+
+struct CubicSplineLanes {
+  template <class D, class V>
+  static HWY_INLINE V taken(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    const V inner = horner(d, e, 0.5F, -1.4F, 0.0F, 8.0F / 3, 0.0F, -24.0F / 5, 16.0F / 5);
+    const V outer = hn::Mul(hn::Mul(hn::Mul(t2, t2), t), horner(d, e, 8.0F / 15, 16.0F / 15));
+    return hn::IfThenElse(hn::Gt(e, hn::Set(d, 0.5F)), outer, inner);
+  }
+  template <class D, class V>
+  static HWY_INLINE V push(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    const V inner = horner(d, e, 1.4F, 0.0F, -8.0F, 0.0F, 24.0F, -96.0F / 5);
+    const V outer = hn::Mul(hn::Mul(t2, t2), horner(d, e, 1.6F, 6.4F));
+    return hn::IfThenElse(hn::Gt(e, hn::Set(d, 0.5F)), outer, inner);
+  }
+  template <class D, class V>
+  static HWY_INLINE V mass(D d, V r) {
+    const V r3 = hn::Mul(hn::Mul(r, r), r);
+    const V inner = hn::Mul(r3, horner(d, r, 32.0F / 3, 0.0F, -38.4F, 32.0F));
+    const V outer = hn::MulAdd(r3, horner(d, r, 64.0F / 3, -48.0F, 38.4F, -32.0F / 3), hn::Set(d, -1.0F / 15));
+    return hn::IfThenElse(hn::Gt(r, hn::Set(d, 0.5F)), outer, inner);
+  }
+  template <class D, class V>
+  static HWY_INLINE V slope(D d, V r) {
+    constexpr float c = 1 / kPiF;
+    const V r3 = hn::Mul(hn::Mul(r, r), r);
+    const V inner = hn::MulAdd(hn::Mul(r3, r), horner(d, r, 24 * c, -28.8F * c), hn::Set(d, -1.4F * c));
+    const V outer = hn::MulAdd(r3, horner(d, r, 16 * c, -24 * c, 9.6F * c), hn::Set(d, -1.6F * c));
+    return hn::IfThenElse(hn::Gt(r, hn::Set(d, 0.5F)), outer, inner);
+  }
+};
+
+struct WendlandC2Lanes {
+  template <class D, class V>
+  static HWY_INLINE V taken(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    return hn::Mul(hn::Mul(hn::Mul(t2, t2), t2), horner(d, e, 0.5F, 1.5F, 1.5F));
+  }
+  template <class D, class V>
+  static HWY_INLINE V push(D d, V e) {
+    const V t = hn::Sub(hn::Set(d, 1.0F), e), t2 = hn::Mul(t, t);
+    return hn::Mul(hn::Mul(hn::Mul(t2, t2), t), horner(d, e, 1.5F, 7.5F, 12.0F));
+  }
+  template <class D, class V>
+  static HWY_INLINE V mass(D d, V r) {
+    return hn::Mul(hn::Mul(hn::Mul(r, r), r), horner(d, r, 14.0F, 0.0F, -84.0F, 140.0F, -90.0F, 21.0F));
+  }
+  template <class D, class V>
+  static HWY_INLINE V slope(D d, V r) {
+    constexpr float c = 1.5F / kPiF;
+    const V r2 = hn::Mul(r, r);
+    return hn::MulAdd(hn::Mul(r2, r2), horner(d, r, 35 * c, -84 * c, 70 * c, -20 * c), hn::Set(d, -c));
+  }
+};
+
+/// The kernel of the pair gradients, as PairKernel of core/sph/kernels.h.
+template <class Kernel>
+struct PairLanesOf {
+  using Type = Kernel;
+  static constexpr bool kSame = true;
+};
+template <>
+struct PairLanesOf<Poly6Lanes> {
+  using Type = SpikyLanes;
+  static constexpr bool kSame = false;
+};
+
+/// Body::run<Kernel>(arguments...) for the kernel that the type names.
+template <class Body, class... Arguments>
+void withKernelLanes(KernelType type, Arguments&&... arguments) {
+  switch (type) {
+    case KernelType::poly6:
+      return Body::template run<Poly6Lanes>(arguments...);
+    case KernelType::spiky:
+      return Body::template run<SpikyLanes>(arguments...);
+    case KernelType::cubicSpline:
+      return Body::template run<CubicSplineLanes>(arguments...);
+    case KernelType::wendlandC2:
+      return Body::template run<WendlandC2Lanes>(arguments...);
+  }
+}
+
+}  // namespace migiwa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
