@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/boundary/boundary.h"
-#include "core/sph/neighbour_lists.h"
+#include "core/sph/cell_grid.h"
 
 namespace migiwa {
 
@@ -16,25 +16,21 @@ struct Tank {
   Vec3d half;            ///< along those axes
 };
 
-/// The first box that holds the fluid, if gravity runs along one of its axes.
+/// The box that holds the fluid, if gravity runs along one of its axes and nothing else stands in it.
 std::optional<Tank> uprightTank(const Scene& scene) {
-  if (scene.gravity.norm() <= 0) return std::nullopt;
-  const Vec3d up = -scene.gravity.normalized();
-  for (const auto& surface : scene.surfaces) {
-    const BoxGeometry* box = surface->tank();
-    if (box == nullptr) continue;
-    int axis = 0;
-    const Vec3d along = box->axes.transpose() * up;
-    if (along.cwiseAbs().maxCoeff(&axis) < 0.9999) return std::nullopt;
-    const int first = (axis + 2) % 3, second = (axis + 1) % 3;
-    Tank tank;
-    tank.center = box->center;
-    tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis),
-        box->axes.col(second);
-    tank.half = {box->halfExtents[first], box->halfExtents[axis], box->halfExtents[second]};
-    return tank;
-  }
-  return std::nullopt;
+  if (scene.gravity.norm() <= 0 || scene.surfaces.size() != 1) return std::nullopt;
+  const BoxGeometry* box = scene.surfaces.front()->tank();
+  if (box == nullptr) return std::nullopt;
+  int axis = 0;
+  const Vec3d along = box->axes.transpose() * -scene.gravity.normalized();
+  if (along.cwiseAbs().maxCoeff(&axis) < 0.9999) return std::nullopt;
+  const int first = (axis + 2) % 3, second = (axis + 1) % 3;
+  Tank tank;
+  tank.center = box->center;
+  tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis),
+      box->axes.col(second);
+  tank.half = {box->halfExtents[first], box->halfExtents[axis], box->halfExtents[second]};
+  return tank;
 }
 
 /// Volume of the strips of cross-section a x a along the four vertical edges and the four floor edges, up to
@@ -60,18 +56,27 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
                                                 float spacing, float support, ThreadPool& pool) {
   CellGrid grid;
   grid.build(positions, support, pool);
-  std::vector<Float4> sorted(positions.size());
-  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = positions[grid.order()[k]];
-  NeighbourLists lists;
-  lists.build(grid, sorted, support, pool);
-  std::vector<NearestNeighbour> result(sorted.size());
-  parallelFor(pool, sorted.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+  // Straight from the grid: lists, and even a sorted copy, would be felt at millions of particles.
+  const std::vector<std::uint32_t>& order = grid.order();
+  std::vector<NearestNeighbour> result(order.size());
+  parallelFor(pool, order.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f at = sorted[i].xyz();
-      float nearest = std::numeric_limits<float>::infinity();
-      for (const std::uint32_t j : lists.of(i))
-        nearest = std::min(nearest, (at - sorted[j].xyz()).squaredNorm());
-      result[i] = {std::sqrt(nearest) / spacing, boundary.distance(at) < support};
+      const Float4& own = positions[order[i]];
+      const Vec3f at = own.xyz();
+      const CellGrid::Cell cell = grid.cellOf(own);
+      float nearest = support * support;
+      bool found = false;
+      for (int row = 0; row < 9; ++row) {
+        const auto [from, to] = grid.row(cell.x - 1, cell.x + 1, cell.y + row % 3 - 1, cell.z + row / 3 - 1);
+        for (std::uint32_t j = from; j < to; ++j) {
+          const float squared = (at - positions[order[j]].xyz()).squaredNorm();
+          if (j == i || squared >= nearest) continue;
+          nearest = squared;
+          found = true;
+        }
+      }
+      const float distance = found ? std::sqrt(nearest) / spacing : std::numeric_limits<float>::infinity();
+      result[i] = {distance, boundary.distance(at) < support};
     }
   });
   return result;

@@ -33,7 +33,8 @@ void solveConstraint(StepState& state) {
     if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
       break;
     if (state.iterations >= parameters.maxIterations) break;
-    const float weight = parameters.acceleration == Acceleration::chebyshev ? chebyshev.next() : 1;
+    const bool stretch = parameters.acceleration == Acceleration::chebyshev;
+    const float weight = stretch ? chebyshev.next(state.errors, parameters.tolerance) : 1;
     state.times.time("position", [&] { stages::movePositions(state, weight); });
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });

@@ -85,21 +85,21 @@ HWY_INLINE std::uint32_t* appendNeighbours(const Candidates& candidates, std::si
   return out;
 }
 
-/// Appends the lists of the particles [begin, end) of one cell to a chunk with room for all of their
-/// candidates; start and count are those of the first of them.
+/// Appends the lists of the particles [begin, end) of one cell to `lists`, which has room for all of their
+/// candidates and is `used` so far; start and count are those of the first of them.
 void listCell(const SortedCoordinates& sorted, const CellGrid::Places* rows, float radius2,
-              std::uint32_t begin, std::uint32_t end, const Candidates& candidates,
-              NeighbourLists::Chunk& chunk, std::uint32_t* start, std::uint32_t* count) {
+              std::uint32_t begin, std::uint32_t end, const Candidates& candidates, std::uint32_t* lists,
+              std::size_t& used, std::uint32_t* start, std::uint32_t* count) {
   const std::size_t candidateCount = gatherCandidates(sorted, rows, candidates);
   for (std::uint32_t i = begin; i < end; ++i) {
     const Float4 p(sorted.x[i], sorted.y[i], sorted.z[i]);
-    std::uint32_t* const list = chunk.offsets.get() + chunk.used;
+    std::uint32_t* const list = lists + used;
     std::uint32_t* const listEnd = appendNeighbours(candidates, candidateCount, p, radius2, i << 4U, list);
     for (std::size_t k = 0; k < NeighbourLists::kGroup; ++k) listEnd[k] = sorted.ghost;
     const auto found = static_cast<std::uint32_t>(listEnd - list);
-    start[i - begin] = static_cast<std::uint32_t>(chunk.used);
+    start[i - begin] = static_cast<std::uint32_t>(used);
     count[i - begin] = found;
-    chunk.used += NeighbourLists::wholeGroups(found);
+    used += NeighbourLists::wholeGroups(found);
   }
 }
 
@@ -113,13 +113,30 @@ HWY_EXPORT(listCell);
 
 static_assert(sizeof(Float4) == 16, "offsets are indices shifted by four bits");
 
-void NeighbourLists::Chunk::reserve(std::size_t more) {
-  if (used + more <= capacity) return;
-  capacity = std::max(used + more, capacity + capacity / 4);
-  auto larger = std::make_unique_for_overwrite<std::uint32_t[]>(capacity);
-  std::copy_n(offsets.get(), used, larger.get());
-  offsets = std::move(larger);
+void NeighbourLists::Chunk::assign(std::span<const std::uint32_t> lists) {
+  if (lists.size() > capacity) {
+    // A little more, for the next step's lists are about as long.
+    capacity = lists.size() + lists.size() / 16;
+    offsets = std::make_unique_for_overwrite<std::uint32_t[]>(capacity);
+  }
+  std::copy(lists.begin(), lists.end(), offsets.get());
 }
+
+namespace {
+
+/// Room that a thread fills the lists of a chunk in: candidates by far outnumber neighbours, and only the
+/// neighbours are kept.
+struct Room {
+  std::vector<float> coordinates;
+  std::vector<std::uint32_t> offsets, lists;
+
+  Candidates candidates(std::size_t count) {
+    if (offsets.size() < count) coordinates.resize(3 * count), offsets.resize(count);
+    return {&coordinates[0], &coordinates[count], &coordinates[2 * count], offsets.data()};
+  }
+};
+
+}  // namespace
 
 void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positions, float radius,
                            ThreadPool& pool) {
@@ -147,10 +164,8 @@ void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positio
 
   const SortedCoordinates sorted{x, y, z, static_cast<std::uint32_t>(n * sizeof(Float4))};
   parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t number) {
-    Chunk& chunk = chunks_[number];
-    chunk.used = 0;
-    std::vector<float> coordinates;
-    std::vector<std::uint32_t> offsets;
+    thread_local Room room;
+    std::size_t used = 0;
     const auto last = static_cast<std::uint32_t>(end);
     for (auto i = static_cast<std::uint32_t>(begin); i < last;) {
       // The particles of a cell share its rows of candidates.
@@ -161,16 +176,15 @@ void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positio
         rows[row] = grid.row(cell.x - 1, cell.x + 1, cell.y + row % 3 - 1, cell.z + row / 3 - 1);
         candidates += rows[row].to - rows[row].from;
       }
-      const std::size_t room = candidates + kGroup;
-      if (offsets.size() < room) coordinates.resize(3 * room), offsets.resize(room);
       const std::uint32_t cellEnd = std::min(last, grid.places(cell).to);
-      chunk.reserve((cellEnd - i) * (candidates + 2 * kGroup));
+      const std::size_t needed = used + (cellEnd - i) * (candidates + 2 * kGroup);
+      if (room.lists.size() < needed) room.lists.resize(needed);
       HWY_DYNAMIC_DISPATCH(listCell)
-      (sorted, rows, radius * radius, i, cellEnd,
-       {&coordinates[0], &coordinates[room], &coordinates[2 * room], offsets.data()}, chunk, &start_[i],
-       &count_[i]);
+      (sorted, rows, radius * radius, i, cellEnd, room.candidates(candidates + kGroup), room.lists.data(),
+       used, &start_[i], &count_[i]);
       i = cellEnd;
     }
+    chunks_[number].assign(std::span(room.lists).first(used));
   });
 }
 

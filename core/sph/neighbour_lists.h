@@ -27,14 +27,6 @@ class NeighbourLists {
     return (count + kGroup - 1) / kGroup * kGroup;
   }
 
-  /// The lists of a fixed range of particles: ranges are filled independently.
-  struct Chunk {
-    std::unique_ptr<std::uint32_t[]> offsets;
-    std::size_t capacity = 0;
-    std::size_t used = 0;
-    void reserve(std::size_t more);
-  };
-
   void build(const CellGrid& grid, std::span<const Float4> positions, float radius, ThreadPool& pool);
   /// The same in borrowed memory: `scratch` has room for the particles, and kScratchExtra more.
   void build(const CellGrid& grid, std::span<const Float4> positions, float radius, std::span<Float4> scratch,
@@ -70,6 +62,12 @@ class NeighbourLists {
   std::size_t bytes() const;
 
  private:
+  /// The lists of a fixed range of particles: ranges are filled independently.
+  struct Chunk {
+    std::unique_ptr<std::uint32_t[]> offsets;
+    std::size_t capacity = 0;
+    void assign(std::span<const std::uint32_t> lists);
+  };
   std::vector<Chunk> chunks_;
   std::vector<std::uint32_t> start_;  ///< of each particle's list within its chunk's
   std::vector<std::uint32_t> count_;

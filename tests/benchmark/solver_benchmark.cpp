@@ -3,6 +3,7 @@
 // failure.
 //
 // usage: migiwa_bench [--csv FILE] [Google Benchmark's options]
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include <benchmark/benchmark.h>
 
@@ -231,7 +233,15 @@ class Medians final : public benchmark::ConsoleReporter {
 };
 
 /// One line a benchmark: its medians, and the share of the machine's peaks at the same number of threads.
-void writeCsv(const std::string& path, const Medians& medians) {
+void writeCsv(const std::string& path, Medians medians) {
+  std::sort(medians.rows.begin(), medians.rows.end(), [](const Medians::Row& a, const Medians::Row& b) {
+    const auto place = [](const Medians::Row& row) {
+      const auto particles = row.values.find("particles");
+      return std::tuple(row.name, row.values.at("threads"),
+                        particles == row.values.end() ? 0.0 : particles->second);
+    };
+    return place(a) < place(b);
+  });
   std::map<int, double> bandwidth, arithmetic;
   for (const Medians::Row& row : medians.rows) {
     if (row.name.starts_with("peak_bandwidth"))

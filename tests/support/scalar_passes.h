@@ -35,7 +35,7 @@ inline void scalarLambda(const StepState& state, const IndexLists& lists, Scalar
   const float h = state.supportRadius, mass = state.lattice.massRatio;
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const std::size_t n = state.particles.size();
-  out.density.resize(n), out.lambda.resize(n);
+  out.density.assign(n, 0), out.lambda.assign(n, 0);
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f at = state.current[i].xyz();
@@ -62,7 +62,7 @@ inline void scalarLambda(const StepState& state, const IndexLists& lists, Scalar
 inline void scalarMove(const StepState& state, const IndexLists& lists, ScalarResult& out) {
   const float h = state.supportRadius, mass = state.lattice.massRatio;
   const std::size_t n = state.particles.size();
-  out.moved.resize(n);
+  out.moved.assign(n, Vec3f::Zero());
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f at = state.current[i].xyz();

@@ -1,0 +1,110 @@
+// The vectorised passes against plain code, pair by pair, on every instruction set that this processor has.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "core/effects/effect.h"
+#include "core/solver/stages.h"
+#include "tests/support/dense_tank.h"
+#include "tests/support/scalar_passes.h"
+
+namespace migiwa {
+namespace {
+
+using testing::DenseTank;
+
+/// Runs a check once for each instruction set, and sets the processor's own again.
+template <class Check>
+void onEveryTarget(const Check& check) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    check();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+TEST(VectorPasses, ThereIsAScalarOneToCompareWith) {
+  bool scalar = false;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    scalar = scalar || target == HWY_SCALAR;
+  EXPECT_TRUE(scalar);
+}
+
+TEST(VectorPasses, AnIterationIsThatOfPlainCode) {
+  onEveryTarget([] {
+    DenseTank tank(2000, 1);
+    tank.prepare();
+    StepState& state = tank.state();
+    const testing::IndexLists lists(state);
+    testing::ScalarResult plain;
+    testing::scalarLambda(state, lists, plain);
+    testing::scalarMove(state, lists, plain);
+    const IterationError error = stages::computeLambda(state);
+    stages::movePositions(state);
+    double sum = 0;
+    for (std::size_t i = 0; i < plain.moved.size(); ++i) {
+      ASSERT_NEAR(state.density[i], plain.density[i], 1e-5F * plain.density[i]);
+      ASSERT_NEAR(state.lambda[i], plain.lambda[i], 1e-5F);
+      ASSERT_LT((state.current[i].xyz() - plain.moved[i]).norm(), 1e-5F * state.supportRadius);
+      sum += std::max(static_cast<double>(plain.density[i]) - 1, 0.0);
+    }
+    EXPECT_GT(error.mean, 1e-3) << "the lattice is pushed out of its places";
+    EXPECT_NEAR(error.mean, sum / static_cast<double>(plain.moved.size()), 1e-6);
+  });
+}
+
+/// Positions and velocities by id after a step.
+std::vector<std::pair<Vec3f, Vec3f>> afterAStep() {
+  DenseTank tank(2000, 1);
+  StepState& state = tank.state();
+  // The number of iterations must not hang on rounding.
+  state.parameters.minIterations = state.parameters.maxIterations = 4;
+  std::vector<EffectStage> effects(1);
+  effects.front() = {"viscosity", std::shared_ptr<const Effect>(makeEffect(0))};
+  advanceStep(state, effects);
+  std::vector<std::pair<Vec3f, Vec3f>> result(state.particles.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[state.particles.id[i]] = {state.particles.position[i].xyz(), state.particles.velocity[i].xyz()};
+  return result;
+}
+
+TEST(VectorPasses, AStepIsTheSameWithinRoundingOnEveryInstructionSet) {
+  const auto reference = afterAStep();
+  onEveryTarget([&] {
+    const auto other = afterAStep();
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+      // Relative to a coordinate, and to the speed that a whole spacing a step would be.
+      ASSERT_LT((other[i].first - reference[i].first).norm(), 1e-5F * reference[i].first.norm());
+      ASSERT_LT((other[i].second - reference[i].second).norm(), 1e-3F * DenseTank::kSpacing / 0.005F);
+    }
+  });
+}
+
+TEST(VectorPasses, EveryKernelsVectorIsTheKernel) {
+  for (const KernelType kernel :
+       {KernelType::poly6, KernelType::spiky, KernelType::cubicSpline, KernelType::wendlandC2}) {
+    onEveryTarget([kernel] {
+      DenseTank tank(500, 1);
+      StepState& state = tank.state();
+      state.parameters.kernel = kernel;
+      state.lattice = restingLattice(kernel, state.parameters.supportRatio);
+      tank.prepare();
+      withKernel(kernel, [&](auto density) {
+        using Kernel = decltype(density);
+        for (std::size_t i = 0; i < state.particles.size(); ++i) {
+          float covered = Kernel::value(0);
+          for (const std::uint32_t j : state.neighbours.of(i))
+            covered +=
+                Kernel::value((state.current[i].xyz() - state.current[j].xyz()).norm() / state.supportRadius);
+          const float expected = state.lattice.massRatio * covered / state.gamma[i];
+          ASSERT_NEAR(state.density[i], expected, 2e-5F * expected);
+        }
+      });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace migiwa
