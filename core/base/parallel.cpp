@@ -7,8 +7,8 @@ namespace migiwa {
 
 namespace {
 
-/// Some ten microseconds.
-constexpr int kLooksBeforeSleep = 400;
+/// Some seventy microseconds: longer than the serial parts of a step, shorter than it takes to be woken twice.
+constexpr int kLooksBeforeSleep = 2000;
 
 void pause() {
 #if defined(__x86_64__)
