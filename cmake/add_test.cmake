@@ -21,10 +21,11 @@ function(migiwa_add_test name)
   target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   migiwa_target_options(${name})
 
+  # Tests make their grids of gamma themselves: one that an earlier build has left would be no test of this one.
   # Labels are set by a file of our own that ctest reads after the discovery's: on its way through the discovery a list
   # of several labels would fall apart.
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT})
+    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT MIGIWA_CACHE=/dev/null)
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   file(WRITE ${labels_file}
     "foreach(test IN LISTS ${name}_list)\n  set_tests_properties(\${test} PROPERTIES LABELS \"${arg_LABELS}\")\nendforeach()\n")

@@ -24,16 +24,21 @@ struct GammaOptions {
   bool allMethods = false;
 };
 
-GammaContext contextOf(const Scene& scene, const Boundary& boundary) {
-  return {boundary, scene.solver.kernel, static_cast<float>(scene.supportRadius()), scene.boundary.directions,
-          scene.boundary.samples};
+GammaContext contextOf(const Scene& scene, const Boundary& boundary, ThreadPool& pool) {
+  return {boundary,
+          scene.solver.kernel,
+          static_cast<float>(scene.supportRadius()),
+          scene.boundary.directions,
+          scene.boundary.samples,
+          scene.bounds(),
+          &pool};
 }
 
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
   requireWritable(options.out, "--out");
   const std::vector<Vec3d> points = readPoints(options.points);
   const Boundary boundary(scene.surfaces);
-  const GammaContext context = contextOf(scene, boundary);
+  const GammaContext context = contextOf(scene, boundary, pool);
   const PickedGamma picked = makeGammaMethod(scene.boundary.gammaMethod, context);
   std::vector<Float4> at(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4(points[i].cast<float>());
@@ -163,7 +168,7 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
   const std::string stem = (folder / (scene.stem() + (options.allMethods ? "_methods" : "_gamma"))).string();
   requireWritable(stem + ".csv", "--map");
 
-  const GammaContext context = contextOf(scene, boundary);
+  const GammaContext context = contextOf(scene, boundary, pool);
   const std::vector<float> reference = gammaMap(*referenceGamma(context).method, boundary, window, pool);
   std::vector<MethodMap> maps;
   std::vector<MapPanel> panels;

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/bounds.h"
+#include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/boundary/boundary.h"
 #include "core/sph/kernel_type.h"
@@ -41,9 +43,11 @@ class GammaMethod {
 struct GammaContext {
   const Boundary& boundary;
   KernelType kernel;
-  float supportRadius;   ///< (m)
-  int directions = 256;  ///< of the method "directions"
-  int samples = 100000;  ///< of the method "monte_carlo"
+  float supportRadius;         ///< (m)
+  int directions = 256;        ///< of the method "directions"
+  int samples = 100000;        ///< of the method "monte_carlo"
+  Bounds region{};             ///< where the method "baked" has a grid (m); empty: about the finite walls
+  ThreadPool* pool = nullptr;  ///< for what takes long; null: the calling thread alone
 };
 
 /// Names for the scene's gamma method, "auto" first.

@@ -203,11 +203,16 @@ bool Polynomial::project(Vec3f& p, float margin) const {
   return moved;
 }
 
+double Polynomial::heightOf(const Vec3f& p) const {
+  const Vec3d local = toLocal(p);
+  return local.z() - at(local.x(), local.y()).z;
+}
+
 template <class Visit>
-void Polynomial::alongRays(const Vec3f& origin, const Directions& directions, const Visit& visit) const {
+void Polynomial::alongRays(const Vec3f& origin, const Directions& directions, double above,
+                           const Visit& visit) const {
   const Vec3d o = toLocal(origin);
   const Value f = at(o.x(), o.y());
-  const double above = std::max(o.z() - f.z, 0.0);
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Vec3d w =
         axes_.transpose() * Vec3d(static_cast<double>(directions.x[k]), static_cast<double>(directions.y[k]),
@@ -222,20 +227,43 @@ void Polynomial::alongRays(const Vec3f& origin, const Directions& directions, co
 }
 
 void Polynomial::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
-  alongRays(origin, directions, [&](std::size_t k, const Vec3d& o, const Vec3d& w, const Cubic& height) {
-    const double most = static_cast<double>(hits[k]);
-    const double t = nextCrossing(height, 1, 0, most);
-    if (t < most && (o + t * w).norm() <= radius_) hits[k] = static_cast<float>(t);
-  });
+  alongRays(origin, directions, std::max(heightOf(origin), 0.0),
+            [&](std::size_t k, const Vec3d& o, const Vec3d& w, const Cubic& height) {
+              const double most = static_cast<double>(hits[k]);
+              const double t = nextCrossing(height, 1, 0, most);
+              if (t < most && (o + t * w).norm() <= radius_) hits[k] = static_cast<float>(t);
+            });
 }
 
 void Polynomial::exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const {
-  alongRays(origin, directions, [&](std::size_t k, const Vec3d&, const Vec3d&, const Cubic& height) {
-    const double most = 2 * radius_;
-    const double enter = nextCrossing(height, 1, 0, most);
-    const double leave = enter < most ? nextCrossing(height, -1, enter, most) : most;
-    exits[k] = leave < most ? static_cast<float>(leave) : std::numeric_limits<float>::infinity();
-  });
+  alongRays(origin, directions, std::max(heightOf(origin), 0.0),
+            [&](std::size_t k, const Vec3d&, const Vec3d&, const Cubic& height) {
+              const double most = 2 * radius_;
+              const double enter = nextCrossing(height, 1, 0, most);
+              const double leave = enter < most ? nextCrossing(height, -1, enter, most) : most;
+              exits[k] = leave < most ? static_cast<float>(leave) : std::numeric_limits<float>::infinity();
+            });
+}
+
+void Polynomial::crossings(const Vec3f& origin, const Directions& directions, float reach,
+                           std::span<RayCrossings> out) const {
+  const double above = heightOf(origin), most = static_cast<double>(reach);
+  const bool inBall = toLocal(origin).norm() < radius_;
+  alongRays(origin, directions, above,
+            [&](std::size_t k, const Vec3d& o, const Vec3d& w, const Cubic& height) {
+              out[k].fill(std::numeric_limits<float>::infinity());
+              double sign = above < 0 ? -1 : 1, t = 0;
+              bool solid = above < 0 && inBall;
+              for (std::size_t found = 0; found < out[k].size(); sign = -sign) {
+                t = nextCrossing(height, sign, t, most);
+                if (t >= most) break;
+                // Outside the ball there is no surface to go in by.
+                const bool changes = sign < 0 ? solid : (o + t * w).norm() <= radius_;
+                if (!changes) continue;
+                out[k][found++] = static_cast<float>(t);
+                solid = !solid;
+              }
+            });
 }
 
 Bounds Polynomial::bounds() const {

@@ -26,6 +26,8 @@ class Polynomial final : public Surface {
   /// Over a dome or a saddle a ray may dip into the solid and come out.
   bool reentrant() const override { return true; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
+  void crossings(const Vec3f& origin, const Directions& directions, float reach,
+                 std::span<RayCrossings> out) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
@@ -37,7 +39,9 @@ class Polynomial final : public Surface {
   /// Calls visit(k, cubic) with the height over the graph along direction k, c[0] + c[1] t + c[2] t^2 + c[3]
   /// t^3.
   template <class Visit>
-  void alongRays(const Vec3f& origin, const Directions& directions, const Visit& visit) const;
+  void alongRays(const Vec3f& origin, const Directions& directions, double above, const Visit& visit) const;
+  /// Height of a point over the graph.
+  double heightOf(const Vec3f& p) const;
   void prepare();
   /// Whether some of the graph lies inside the ball.
   bool hasSurface() const;

@@ -53,8 +53,9 @@ void Simulation::State::configure() {
   info.handling = "no correction";
   statistics.gammaPicked.clear();
   if (scene.boundary.handling == BoundaryHandling::gamma && !boundary.empty()) {
-    gamma = makeGammaMethod(scene.boundary.gammaMethod, {boundary, scene.solver.kernel, step.supportRadius,
-                                                         scene.boundary.directions, scene.boundary.samples});
+    gamma = makeGammaMethod(scene.boundary.gammaMethod,
+                            {boundary, scene.solver.kernel, step.supportRadius, scene.boundary.directions,
+                             scene.boundary.samples, scene.bounds(), &pool});
     info.handling = "gamma: " + gamma.name;
     statistics.gammaPicked = gamma.name;
     statistics.gammaReason = gamma.reason;

@@ -58,6 +58,13 @@ std::vector<Place> places() {
   return all;
 }
 
+/// What a grid has to cover.
+Bounds regionOf(const Place& place) {
+  Bounds region;
+  for (const Float4& p : place.points) region.include(p.xyz().cast<double>());
+  return region;
+}
+
 void run(benchmark::State& state, const Place& place, const GammaMethod& method) {
   std::vector<GammaSample> samples(kBatch);
   std::size_t at = 0;
@@ -82,8 +89,8 @@ int main(int count, char** arguments) {
       for (const int directions : {256, 1024}) {
         const bool byDirections = names[index] == "directions";
         if (directions != 256 && !byDirections) continue;
-        kept.push_back(makeGammaMethod(static_cast<int>(index),
-                                       {at.boundary, KernelType::poly6, kSupport, directions, 10000}));
+        kept.push_back(makeGammaMethod(static_cast<int>(index), {at.boundary, KernelType::poly6, kSupport,
+                                                                 directions, 10000, regionOf(at)}));
         std::string name = at.name + "/" + std::string(names[index]);
         if (byDirections) name += "_" + std::to_string(directions);
         benchmark::RegisterBenchmark(name.c_str(), [&at, method = kept.back().method.get()](

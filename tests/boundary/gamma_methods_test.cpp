@@ -85,9 +85,9 @@ double largestErrorInTank(std::string_view name, double size, const Vec3f& from,
 
 const Vec3f kCorner = Vec3f::Zero(), kAway = Vec3f::Constant(kSupport);
 
-TEST(Gamma, EveryMethodIsExactAtOnePlane) {
+TEST(Gamma, EveryMethodIsRightAtOnePlane) {
   for (const std::string_view name : gammaMethodNames()) {
-    const double bound = name == "monte_carlo" ? 1e-3 : 1e-5;
+    const double bound = name == "monte_carlo" ? 1e-3 : name == "baked" ? 5e-4 : 1e-5;
     EXPECT_LT(largestErrorInTank(name, 1, {0, 0.5F, 0.5F}, {kSupport, 0.5F, 0.5F}), bound) << name;
   }
 }

@@ -1,12 +1,14 @@
 // Picks the method at every point by the walls in reach there:
 //   planes at right angles, or one alone   product     closed forms
 //   two planes at any other angle          copula
-//   three or more of those, curved walls,
-//   the rims of thin ones                  directions
+//   three or more of those, the rims of
+//   thin walls                             directions
+//   curved walls                           baked, if the grid is soon made, else directions
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "core/boundary/gamma/flat_planes.h"
 #include "core/boundary/gamma/gamma_methods.h"
@@ -24,9 +26,15 @@ class AutoGamma final : public GammaMethod {
       : boundary_(context.boundary),
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
-        methods_{makeProductGamma(context), makeCopulaGamma(context), makeDirectionsGamma(fine(context))} {}
+        methods_{makeProductGamma(context), makeCopulaGamma(context), makeAboutCurves(context)},
+        baked_(methods_[kDirections] != nullptr),
+        curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
+                             [](const auto& surface) { return surface->planar(); })) {
+    if (!baked_) methods_[kDirections] = makeDirectionsGamma(fine(context));
+  }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    if (curved_) return methods_[kDirections]->evaluate(points, out);
     if (flat_) {
       methods_[kProduct]->evaluate(points, out);
       if (flat_->rightAngled()) return;
@@ -58,12 +66,14 @@ class AutoGamma final : public GammaMethod {
     const auto& surfaces = boundary_.surfaces();
     const bool planar =
         std::all_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s->planar(); });
-    const bool curved =
-        std::none_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s->planar(); });
-    if (curved) return {"directions", "all walls are curved"};
-    if (!planar)
-      return {"product, copula, directions",
-              "by the walls in reach of each particle: planes and curved walls"};
+    if (!planar) {
+      const std::string curved = baked_ ? "baked" : "directions";
+      const std::string why =
+          baked_ ? "; curved walls: " + methods_[kDirections]->choice().reason
+                 : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
+      if (curved_) return {curved, "all walls are curved" + why};
+      return {"product, copula, " + curved, "by the walls in reach of each particle" + why};
+    }
     if (std::any_of(surfaces.begin(), surfaces.end(),
                     [this](const auto& s) { return s->thickness() < support_; }))
       return {
@@ -76,6 +86,21 @@ class AutoGamma final : public GammaMethod {
   }
 
  private:
+  /// A grid about the curved walls; null where there are none, or too large ones.
+  static std::unique_ptr<GammaMethod> makeAboutCurves(GammaContext context) {
+    Bounds curves;
+    for (const auto& surface : context.boundary.surfaces())
+      if (!surface->planar()) curves.include(surface->bounds());
+    if (curves.empty()) return nullptr;
+    if (!context.region.empty()) {
+      curves.min = curves.min.cwiseMax(context.region.min);
+      curves.max = curves.max.cwiseMin(context.region.max);
+      if (curves.empty()) return nullptr;
+    }
+    context.region = curves;
+    return makeBakedGammaIfQuick(context);
+  }
+
   /// Enough directions to stay within 0.004 wherever they are used.
   static GammaContext fine(GammaContext context) {
     context.directions = 1024;
@@ -130,6 +155,8 @@ class AutoGamma final : public GammaMethod {
   float support_;
   std::optional<FlatPlanes> flat_;
   std::unique_ptr<GammaMethod> methods_[3];
+  bool baked_;   ///< the last is a grid
+  bool curved_;  ///< all walls are
 };
 
 }  // namespace

@@ -26,9 +26,9 @@ double correlation(const Variable& a, const Variable& b) {
   return static_cast<double>(a.part->axis.dot(b.part->axis));
 }
 
-KernelPart two(const Variable& a, const Variable& b) {
+KernelPart two(const Variable& a, const Variable& b, bool needed) {
   const double r = correlation(a, b);
-  const double value = bivariateNormalCdf(a.quantile, b.quantile, r);
+  const double value = needed ? bivariateNormalCdf(a.quantile, b.quantile, r) : 0;
   return {static_cast<float>(value),
           static_cast<float>(given(a, b, r)) * a.part->gradient +
               static_cast<float>(given(b, a, r)) * b.part->gradient,
@@ -43,9 +43,10 @@ double given(const Variable& on, const Variable& b, const Variable& c) {
   return bivariateNormalCdf((b.quantile - rb * on.quantile) / sb, (c.quantile - rc * on.quantile) / sc, r);
 }
 
-KernelPart three(const Variable& a, const Variable& b, const Variable& c) {
-  const double value = trivariateNormalCdf(a.quantile, b.quantile, c.quantile, correlation(a, b),
-                                           correlation(a, c), correlation(b, c));
+KernelPart three(const Variable& a, const Variable& b, const Variable& c, bool needed) {
+  const double value = needed ? trivariateNormalCdf(a.quantile, b.quantile, c.quantile, correlation(a, b),
+                                                    correlation(a, c), correlation(b, c))
+                              : 0;
   return {static_cast<float>(value),
           static_cast<float>(given(a, b, c)) * a.part->gradient +
               static_cast<float>(given(b, a, c)) * b.part->gradient +
@@ -55,7 +56,7 @@ KernelPart three(const Variable& a, const Variable& b, const Variable& c) {
 
 struct Copula {
   static constexpr bool kOblique = true;
-  static KernelPart intersection(std::vector<KernelPart>& parts) {
+  static KernelPart intersection(std::vector<KernelPart>& parts, bool value) {
     if (parts.empty()) return {1, Vec3f::Zero(), Vec3f::Zero()};
     if (parts.size() == 1) return parts.front();
     // The parts that take the most away go together exactly.
@@ -64,8 +65,9 @@ struct Copula {
     const auto variable = [&](std::size_t k) {
       return Variable{&parts[k], normalQuantile(static_cast<double>(parts[k].value))};
     };
-    KernelPart joint =
-        parts.size() == 2 ? two(variable(0), variable(1)) : three(variable(0), variable(1), variable(2));
+    const bool needed = value || parts.size() > 3;
+    KernelPart joint = parts.size() == 2 ? two(variable(0), variable(1), needed)
+                                         : three(variable(0), variable(1), variable(2), needed);
     for (std::size_t k = 3; k < parts.size(); ++k) {
       joint.gradient = joint.gradient * parts[k].value + joint.value * parts[k].gradient;
       joint.value *= parts[k].value;

@@ -17,6 +17,10 @@ std::unique_ptr<GammaMethod> makeProductGamma(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeCopulaGamma(const GammaContext& context);
 /// The mean over fixed directions of the kernel's mass up to the first wall; any shape.
 std::unique_ptr<GammaMethod> makeDirectionsGamma(const GammaContext& context);
+/// A grid of gamma about walls that stand still, made once and kept on disk.
+std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context);
+/// The same, or null where making the grid could take more than a few seconds.
+std::unique_ptr<GammaMethod> makeBakedGammaIfQuick(const GammaContext& context);
 /// The reference: the share of samples of the kernel that lie in the fluid.
 std::unique_ptr<GammaMethod> makeMonteCarloGamma(const GammaContext& context);
 /// Picks among the others at every point, by the shapes in reach.

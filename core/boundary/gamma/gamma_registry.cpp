@@ -14,13 +14,10 @@ struct Entry {
 };
 
 constexpr std::array kMethods{
-    Entry{"auto", makeAutoGamma},
-    Entry{"product", makeProductGamma},
-    Entry{"copula", makeCopulaGamma},
-    Entry{"directions", makeDirectionsGamma},
-    Entry{"mean", makeMeanGamma},
-    Entry{"nearest", makeNearestGamma},
-    Entry{"monte_carlo", makeMonteCarloGamma},
+    Entry{"auto", makeAutoGamma},       Entry{"product", makeProductGamma},
+    Entry{"copula", makeCopulaGamma},   Entry{"directions", makeDirectionsGamma},
+    Entry{"baked", makeBakedGamma},     Entry{"mean", makeMeanGamma},
+    Entry{"nearest", makeNearestGamma}, Entry{"monte_carlo", makeMonteCarloGamma},
 };
 
 }  // namespace

@@ -14,7 +14,8 @@
 namespace migiwa {
 
 /// `Combine` takes the parts of a kernel along the axes of an intersection and returns the part inside all of
-/// them. At right angles that is their product; kOblique: at other angles it is something else.
+/// them, or only that part's gradient. At right angles that is their product; kOblique: at other angles it is
+/// something else.
 template <class Kernel, class Combine>
 class PlanarGamma final : public GammaMethod {
  public:
@@ -51,20 +52,21 @@ class PlanarGamma final : public GammaMethod {
  private:
   static void combine(const HalfSpaces& walls, std::vector<KernelPart>& parts, GammaSample& sample) {
     using Pair = PairKernel<Kernel>;
-    const KernelPart fluid = fluidPart<Kernel>(walls, parts);
+    const KernelPart fluid = fluidPart<Kernel>(walls, parts, true);
     sample.gamma = std::clamp(fluid.value, 0.0F, 1.0F);
     sample.gradient = fluid.gradient;
     sample.pairGradient =
-        std::is_same_v<Kernel, Pair> ? fluid.gradient : fluidPart<Pair>(walls, parts).gradient;
+        std::is_same_v<Kernel, Pair> ? fluid.gradient : fluidPart<Pair>(walls, parts, false).gradient;
   }
 
+  /// Without `value` only the gradient is right.
   template <class K>
-  static KernelPart fluidPart(const HalfSpaces& walls, std::vector<KernelPart>& parts) {
+  static KernelPart fluidPart(const HalfSpaces& walls, std::vector<KernelPart>& parts, bool value) {
     kernelParts<K>(walls.tanks, parts);
-    KernelPart fluid = Combine::intersection(parts);
+    KernelPart fluid = Combine::intersection(parts, value);
     for (const std::vector<HalfSpace>& block : walls.blocks) {
       kernelParts<K>(block, parts);
-      const KernelPart solid = Combine::intersection(parts);
+      const KernelPart solid = Combine::intersection(parts, value);
       fluid.value -= solid.value;
       fluid.gradient -= solid.gradient;
     }

@@ -9,7 +9,7 @@ namespace {
 
 struct Product {
   static constexpr bool kOblique = false;
-  static KernelPart intersection(std::span<const KernelPart> parts) {
+  static KernelPart intersection(std::span<const KernelPart> parts, bool /*value*/) {
     KernelPart product{1, Vec3f::Zero(), Vec3f::Zero()};
     for (const KernelPart& part : parts) {
       product.gradient = product.gradient * part.value + product.value * part.gradient;

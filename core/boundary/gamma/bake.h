@@ -1,0 +1,29 @@
+// Fills a GammaGrid: gamma at its nodes by many directions, on both sides of the walls, then the coefficients
+// of the splines through them.
+#pragma once
+
+#include "core/base/bounds.h"
+#include "core/base/parallel.h"
+#include "core/boundary/gamma/gamma_grid.h"
+
+namespace migiwa {
+
+struct BakeSettings {
+  KernelType kernel;
+  float supportRadius;  ///< (m)
+  float cell;           ///< (m)
+  int directions;       ///< at each node
+  Bounds region;        ///< what the grid covers (m)
+};
+
+/// Memory that a grid may take (bytes).
+inline constexpr double kMostGridBytes = 1024.0 * 1024 * 1024;
+
+/// Blocks in the region, with coefficients or without.
+double blocksIn(const BakeSettings& settings);
+/// The grid without coefficients: which blocks get some. Throws InputError where they would take too much
+/// memory.
+GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings);
+void bake(const Boundary& boundary, const BakeSettings& settings, ThreadPool& pool, GammaGrid& grid);
+
+}  // namespace migiwa

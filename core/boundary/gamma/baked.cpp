@@ -1,0 +1,150 @@
+// gamma from a grid about the walls that is made once, from many directions, and kept on disk: for walls that
+// stand still and cost much to look at. Where a thin wall is near, deep in the solid and outside the grid,
+// directions take its place.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+
+#include "core/boundary/gamma/bake.h"
+#include "core/boundary/gamma/gamma_methods.h"
+#include "core/boundary/gamma/grid_cache.h"
+
+namespace migiwa {
+
+namespace {
+
+/// Cells along a support radius, and directions at a node: with these the grid is within 0.005.
+constexpr float kCellsPerSupport = 5;
+constexpr int kDirections = 1024;
+/// Some two seconds on one core for spheres, and what is laid out in less.
+constexpr double kQuickRays = 2e8, kQuickBlocks = 1e6;
+
+class BakedGamma final : public GammaMethod {
+ public:
+  /// A grid of more blocks than `mostBlocks` is not even laid out.
+  explicit BakedGamma(const GammaContext& context,
+                      double mostBlocks = std::numeric_limits<double>::infinity())
+      : boundary_(context.boundary),
+        support_(context.supportRadius),
+        elsewhere_(makeDirectionsGamma(fine(context))) {
+    Bounds region = context.region;
+    if (region.empty())
+      for (const auto& surface : boundary_.surfaces()) region.include(surface->bounds());
+    if (region.empty()) {
+      reason_ = "walls without end and no fluid: 1024 directions instead of a grid";
+      return;
+    }
+    settings_ = {context.kernel, support_, support_ / kCellsPerSupport, kDirections,
+                 region.grown(static_cast<double>(support_))};
+    if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_);
+  }
+
+  bool laidOut() const { return !grid_.blocks.empty(); }
+  /// What filling the grid takes: rays to be followed, over all nodes and surfaces.
+  double rays() const {
+    const auto blocks =
+        std::count_if(grid_.blocks.begin(), grid_.blocks.end(), [](auto at) { return at >= 0; });
+    constexpr int kNodes = GammaGrid::kCells * GammaGrid::kCells * GammaGrid::kCells;
+    return static_cast<double>(blocks) * kNodes * kDirections *
+           static_cast<double>(boundary_.surfaces().size());
+  }
+
+  /// Reads the grid or makes it.
+  void fill(ThreadPool* pool) {
+    if (!laidOut()) return;
+    const auto start = std::chrono::steady_clock::now();
+    const std::string source = readOrMake(pool);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double mebibytes = static_cast<double>(grid_.coefficients.size() * sizeof(float)) / (1024.0 * 1024);
+    char text[96];
+    std::snprintf(text, sizeof text, "a grid of %.1f MiB, %s in %.2f s", mebibytes, source.c_str(), seconds);
+    reason_ = text + kept_;
+  }
+
+  GammaChoice choice() const override { return {"baked", reason_}; }
+
+  void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    std::array<std::int32_t, kBatch> blocks;
+    for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+      const std::size_t count = std::min(kBatch, points.size() - begin);
+      const auto at = points.subspan(begin, count);
+      const auto samples = out.subspan(begin, count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f p = at[i].xyz();
+        samples[i] = GammaSample{};
+        samples[i].distance = boundary_.distance(p);
+        blocks[i] = samples[i].distance < support_ ? grid_.blockAt(p) : GammaGrid::kFar;
+        if (blocks[i] == GammaGrid::kElsewhere) elsewhere_->evaluate(at.subspan(i, 1), samples.subspan(i, 1));
+      }
+      interpolate(grid_, support_, at, std::span(blocks).first(count), samples);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBatch = 64;
+
+  static GammaContext fine(GammaContext context) {
+    context.directions = 1024;
+    return context;
+  }
+
+  /// Says which.
+  std::string readOrMake(ThreadPool* pool) {
+    const std::string key = keyOf(settings_);
+    const std::filesystem::path folder = cacheFolder();
+    const std::filesystem::path file = folder.empty() ? folder : gridFile(folder, key);
+    if (!file.empty()) {
+      if (std::optional<GammaGrid> known = readGrid(file, key)) {
+        grid_ = *std::move(known);
+        kept_ = " from " + file.string();
+        return "read";
+      }
+    }
+    if (pool != nullptr) {
+      bake(boundary_, settings_, *pool, grid_);
+    } else {
+      ThreadPool alone(1);
+      bake(boundary_, settings_, alone, grid_);
+    }
+    const bool kept = !file.empty() && writeGrid(file, key, grid_);
+    kept_ = kept ? ", kept in " + file.string()
+                 : ", not kept: no folder to write to; MIGIWA_CACHE in the environment can name one";
+    return "made";
+  }
+
+  /// Everything that the grid depends on.
+  std::string keyOf(const BakeSettings& settings) const {
+    char text[256];
+    std::snprintf(text, sizeof text, "directions %d kernel %d support %a cell %a region %a %a %a %a %a %a\n",
+                  settings.directions, static_cast<int>(settings.kernel),
+                  static_cast<double>(settings.supportRadius), static_cast<double>(settings.cell),
+                  settings.region.min.x(), settings.region.min.y(), settings.region.min.z(),
+                  settings.region.max.x(), settings.region.max.y(), settings.region.max.z());
+    return text + describeWalls(boundary_);
+  }
+
+  const Boundary& boundary_;
+  float support_;
+  std::unique_ptr<GammaMethod> elsewhere_;
+  BakeSettings settings_{};
+  GammaGrid grid_;
+  std::string reason_, kept_;
+};
+
+}  // namespace
+
+std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context) {
+  auto method = std::make_unique<BakedGamma>(context);
+  method->fill(context.pool);
+  return method;
+}
+
+std::unique_ptr<GammaMethod> makeBakedGammaIfQuick(const GammaContext& context) {
+  auto method = std::make_unique<BakedGamma>(context, kQuickBlocks);
+  if (!method->laidOut() || method->rays() > kQuickRays) return nullptr;
+  method->fill(context.pool);
+  return method;
+}
+
+}  // namespace migiwa

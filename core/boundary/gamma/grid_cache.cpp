@@ -1,0 +1,222 @@
+#include "core/boundary/gamma/grid_cache.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <type_traits>
+#include <typeinfo>
+
+#include <unistd.h>
+
+namespace migiwa {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Writes all fields one after another, numbers with every bit.
+class TextVisitor final : public FieldVisitor {
+ public:
+  const std::string& written() const { return written_; }
+
+  void number(std::string_view key, double& value, const Range&, const FieldDoc&) override {
+    add(key);
+    add(value);
+  }
+  void integer(std::string_view key, int& value, const Range&, const FieldDoc&) override {
+    add(key);
+    add(static_cast<double>(value));
+  }
+  void boolean(std::string_view key, bool& value, const FieldDoc&) override {
+    add(key);
+    add(value ? 1.0 : 0.0);
+  }
+  void text(std::string_view key, std::string& value, const FieldDoc&) override {
+    add(key);
+    add(value);
+  }
+  void vector(std::string_view key, Vec3d& value, const FieldDoc&) override {
+    add(key);
+    for (const double coordinate : value) add(coordinate);
+  }
+  void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc&, bool*) override {
+    add(key);
+    for (const double end : value) add(end);
+  }
+  void triples(std::string_view key, std::vector<std::array<double, 3>>& values, const FieldDoc&) override {
+    add(key);
+    for (const auto& triple : values)
+      for (const double value : triple) add(value);
+  }
+  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+              const FieldDoc&) override {
+    add(key);
+    add(names[static_cast<std::size_t>(index)]);
+  }
+  void object(std::string_view key, const FieldDoc&, const Fields& fields, bool*) override {
+    add(key);
+    fields(*this);
+  }
+  void list(std::string_view key, std::size_t size, const FieldDoc&,
+            const std::function<void(FieldVisitor&, std::size_t)>& element) override {
+    add(key);
+    for (std::size_t at = 0; at < size; ++at) element(*this, at);
+  }
+  void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc&,
+               const std::function<void(FieldVisitor&, int)>& fields) override {
+    add(key);
+    add(names[static_cast<std::size_t>(index)]);
+    fields(*this, index);
+  }
+  void fault(std::string_view, std::string_view) override {}
+  void add(std::string_view word) { (written_ += word) += ' '; }
+  void add(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%a ", value);
+    written_ += digits;
+  }
+  using FieldVisitor::choice;
+
+ private:
+  std::string written_;
+};
+
+constexpr std::array<char, 8> kMagic{'m', 'i', 'g', 'i', 'w', 'a', 'g', 'g'};
+/// Raised whenever the file or what it means changes.
+constexpr std::uint32_t kVersion = 1;
+/// Tells a machine with another order of bytes.
+constexpr std::uint32_t kOrder = 0x01020304;
+
+struct Header {
+  std::array<char, 8> magic;
+  std::uint32_t version, order;
+  std::uint64_t keyBytes, blocks, floats;
+  std::uint64_t checksum;  ///< of all that follows
+  std::array<float, 3> origin;
+  float cell;
+  std::array<std::int32_t, 3> size;
+  std::uint32_t unused;
+};
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80);
+
+/// FNV-1a over words of eight bytes, the rest filled up with zeros.
+std::uint64_t checksum(std::uint64_t sum, const void* data, std::size_t bytes) {
+  const auto* at = static_cast<const char*>(data);
+  for (std::size_t k = 0; k < bytes; k += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, at + k, std::min<std::size_t>(8, bytes - k));
+    sum = (sum ^ word) * 0x100000001B3U;
+    sum ^= sum >> 29;
+  }
+  return sum;
+}
+
+std::uint64_t checksumOf(const std::string& key, const GammaGrid& grid) {
+  std::uint64_t sum = checksum(0xCBF29CE484222325U, key.data(), key.size());
+  const std::array<float, 4> place{grid.origin.x(), grid.origin.y(), grid.origin.z(), grid.cell};
+  sum = checksum(sum, place.data(), sizeof place);
+  sum = checksum(sum, grid.size.data(), sizeof grid.size);
+  sum = checksum(sum, grid.blocks.data(), grid.blocks.size() * sizeof(std::int32_t));
+  return checksum(sum, grid.coefficients.data(), grid.coefficients.size() * sizeof(float));
+}
+
+template <class T>
+bool readInto(std::ifstream& in, std::vector<T>& values, std::uint64_t count) {
+  values.resize(count);
+  in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(T)));
+  return in.good();
+}
+
+}  // namespace
+
+std::string describeWalls(const Boundary& boundary) {
+  TextVisitor visitor;
+  for (const auto& surface : boundary.surfaces()) {
+    visitor.add(typeid(*surface).name());
+    // As a writer of scenes does: it leaves the surface as it finds it.
+    const_cast<Surface&>(*surface).describe(visitor);
+  }
+  return visitor.written();
+}
+
+fs::path cacheFolder() {
+  const auto set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? fs::path() : fs::path(value);
+  };
+  if (const fs::path own = set("MIGIWA_CACHE"); !own.empty()) return own;
+  if (const fs::path cache = set("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "migiwa";
+  if (const fs::path home = set("HOME"); home.is_absolute()) return home / ".cache" / "migiwa";
+  return {};
+}
+
+fs::path gridFile(const fs::path& folder, const std::string& key) {
+  char name[32];
+  std::snprintf(name, sizeof name, "gamma_%016llx.grid",
+                static_cast<unsigned long long>(checksum(0xCBF29CE484222325U, key.data(), key.size())));
+  return folder / name;
+}
+
+std::optional<GammaGrid> readGrid(const fs::path& file, const std::string& key) {
+  std::ifstream in(file, std::ios::binary);
+  Header header{};
+  in.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (!in || header.magic != kMagic || header.version != kVersion || header.order != kOrder)
+    return std::nullopt;
+  // Sizes are believed only where they make up the file.
+  std::error_code code;
+  const std::uint64_t bytes = fs::file_size(file, code);
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 40;
+  if (code || header.keyBytes != key.size() || header.blocks > kMost || header.floats > kMost ||
+      bytes != sizeof header + header.keyBytes + header.blocks * sizeof(std::int32_t) +
+                   header.floats * sizeof(float))
+    return std::nullopt;
+  std::string found(key.size(), ' ');
+  in.read(found.data(), static_cast<std::streamsize>(found.size()));
+  if (!in || found != key) return std::nullopt;
+  GammaGrid grid;
+  grid.origin = Vec3f(header.origin[0], header.origin[1], header.origin[2]);
+  grid.cell = header.cell;
+  grid.size = header.size;
+  if (!readInto(in, grid.blocks, header.blocks) || !readInto(in, grid.coefficients, header.floats) ||
+      checksumOf(key, grid) != header.checksum)
+    return std::nullopt;
+  return grid;
+}
+
+bool writeGrid(const fs::path& file, const std::string& key, const GammaGrid& grid) {
+  std::error_code code;
+  fs::create_directories(file.parent_path(), code);
+  // Under a name of this process alone: two that start at once do not write into each other's.
+  fs::path temporary = file;
+  temporary += "." + std::to_string(getpid()) + ".tmp";
+  Header header{};
+  header.magic = kMagic;
+  header.version = kVersion;
+  header.order = kOrder;
+  header.keyBytes = key.size();
+  header.blocks = grid.blocks.size();
+  header.floats = grid.coefficients.size();
+  header.checksum = checksumOf(key, grid);
+  header.origin = {grid.origin.x(), grid.origin.y(), grid.origin.z()};
+  header.cell = grid.cell;
+  header.size = grid.size;
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(&header), sizeof header);
+  out.write(key.data(), static_cast<std::streamsize>(key.size()));
+  out.write(reinterpret_cast<const char*>(grid.blocks.data()),
+            static_cast<std::streamsize>(grid.blocks.size() * sizeof(std::int32_t)));
+  out.write(reinterpret_cast<const char*>(grid.coefficients.data()),
+            static_cast<std::streamsize>(grid.coefficients.size() * sizeof(float)));
+  out.close();
+  if (out) fs::rename(temporary, file, code);
+  if (out && !code) return true;
+  fs::remove(temporary, code);
+  return false;
+}
+
+}  // namespace migiwa
