@@ -88,6 +88,7 @@ TEST(IncludeStyle, OursAreQuotedFromTheRootAndExist) {
 TEST(Habits, HeadersSayWhatTheyAreForAndAreGuarded) {
   expectNone(checkHabits({file("core/base/a.h", "// What it is for.\n#pragma once\n")}));
   EXPECT_EQ(checkHabits({file("core/base/a.h", "#include <vector>\n")}).size(), 2u);
+  expectNone(checkHabits({file("core/base/a-inl.h", "// Compiled for every instruction set.\n")}));
 }
 
 TEST(Habits, NoFileIsTooLongOrUnfinished) {
