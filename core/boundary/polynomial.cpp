@@ -153,7 +153,8 @@ Vec3d Polynomial::foot(const Vec3d& p) const {
       }
       const double sx = (hyy * gx - hxy * gy) / determinant, sy = (hxx * gy - hxy * gx) / determinant;
       x -= sx, y -= sy;
-      if (sx * sx + sy * sy < 1e-20 * radius_ * radius_) break;
+      // Newton squares the error: the next step would be at most about 1e-14 of the radius.
+      if (sx * sx + sy * sy < 1e-14 * radius_ * radius_) break;
     }
     // Outside the ball there is no wall: the nearest that is left is near the rim.
     Vec3d q(x, y, at(x, y).z);

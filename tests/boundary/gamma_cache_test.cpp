@@ -41,8 +41,8 @@ class GammaCache : public testing::Test {
     const auto index = static_cast<int>(std::find(names.begin(), names.end(), "baked") - names.begin());
     return makeGammaMethod(index, {boundary, kernel, h});
   }
-  static bool read(const PickedGamma& picked) { return picked.reason.find("read in") != std::string::npos; }
-  static bool made(const PickedGamma& picked) { return picked.reason.find("made in") != std::string::npos; }
+  static bool read(const PickedGamma& picked) { return picked.reason.find("read from") != std::string::npos; }
+  static bool made(const PickedGamma& picked) { return picked.reason.find("made and") != std::string::npos; }
   static float at(const PickedGamma& picked, const Vec3f& p) {
     const Float4 point(p);
     GammaSample sample;
