@@ -110,10 +110,14 @@ void Polynomial::describe(FieldVisitor& visitor) {
 void Polynomial::prepare() {
   const Vec3d z = normal_.normalized();
   const Vec3d y = z.cross(xAxis_).normalized();
-  axes_ << y.cross(z), y, z;
-  c_.fill(0);
+  // Others may be reading: what does not change is never something else in between.
+  Eigen::Matrix3d axes;
+  axes << y.cross(z), y, z;
+  axes_ = axes;
+  std::array<double, 10> c{};
   for (const Term& term : terms_)
-    c_[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
+    c[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
+  c_ = c;
 }
 
 Polynomial::Value Polynomial::at(double x, double y) const {
