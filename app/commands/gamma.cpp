@@ -31,7 +31,8 @@ GammaContext contextOf(const Scene& scene, const Boundary& boundary, ThreadPool&
           scene.boundary.directions,
           scene.boundary.samples,
           scene.bounds(),
-          &pool};
+          &pool,
+          scene.file.string() + ":/boundary/gamma/method"};
 }
 
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {

@@ -34,8 +34,12 @@ class BakedGamma final : public GammaMethod {
       reason_ = "walls without end and no fluid: 1024 directions instead of a grid";
       return;
     }
-    settings_ = {context.kernel, support_, support_ / kCellsPerSupport, kDirections,
-                 region.grown(static_cast<double>(support_))};
+    settings_ = {context.kernel,
+                 support_,
+                 support_ / kCellsPerSupport,
+                 kDirections,
+                 region.grown(static_cast<double>(support_)),
+                 context.place};
     if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_);
   }
 
