@@ -31,7 +31,8 @@ GammaContext contextOf(const Scene& scene, const Boundary& boundary, ThreadPool&
           scene.boundary.directions,
           scene.boundary.samples,
           scene.bounds(),
-          &pool};
+          &pool,
+          scene.file.string() + ":/boundary/gamma/method"};
 }
 
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
@@ -168,7 +169,10 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
   const std::string stem = (folder / (scene.stem() + (options.allMethods ? "_methods" : "_gamma"))).string();
   requireWritable(stem + ".csv", "--map");
 
-  const GammaContext context = contextOf(scene, boundary, pool);
+  GammaContext context = contextOf(scene, boundary, pool);
+  context.region = {};
+  context.region.include(window.point(0, 0));
+  context.region.include(window.point(window.columns - 1, window.rows - 1));
   const std::vector<float> reference = gammaMap(*referenceGamma(context).method, boundary, window, pool);
   std::vector<MethodMap> maps;
   std::vector<MapPanel> panels;

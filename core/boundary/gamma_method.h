@@ -48,6 +48,7 @@ struct GammaContext {
   int samples = 100000;        ///< of the method "monte_carlo"
   Bounds region{};             ///< where the method "baked" has a grid (m); empty: about the finite walls
   ThreadPool* pool = nullptr;  ///< for what takes long; null: the calling thread alone
+  std::string place{};         ///< of the gamma method in the scene file, for errors
 };
 
 /// Names for the scene's gamma method, "auto" first.

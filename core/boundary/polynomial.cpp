@@ -110,10 +110,14 @@ void Polynomial::describe(FieldVisitor& visitor) {
 void Polynomial::prepare() {
   const Vec3d z = normal_.normalized();
   const Vec3d y = z.cross(xAxis_).normalized();
-  axes_ << y.cross(z), y, z;
-  c_.fill(0);
+  // Others may be reading: what does not change is never something else in between.
+  Eigen::Matrix3d axes;
+  axes << y.cross(z), y, z;
+  axes_ = axes;
+  std::array<double, 10> c{};
   for (const Term& term : terms_)
-    c_[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
+    c[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
+  c_ = c;
 }
 
 Polynomial::Value Polynomial::at(double x, double y) const {
@@ -153,7 +157,8 @@ Vec3d Polynomial::foot(const Vec3d& p) const {
       }
       const double sx = (hyy * gx - hxy * gy) / determinant, sy = (hxx * gy - hxy * gx) / determinant;
       x -= sx, y -= sy;
-      if (sx * sx + sy * sy < 1e-20 * radius_ * radius_) break;
+      // Newton squares the error: the next step would be at most about 1e-14 of the radius.
+      if (sx * sx + sy * sy < 1e-14 * radius_ * radius_) break;
     }
     // Outside the ball there is no wall: the nearest that is left is near the rim.
     Vec3d q(x, y, at(x, y).z);

@@ -53,9 +53,10 @@ void Simulation::State::configure() {
   info.handling = "no correction";
   statistics.gammaPicked.clear();
   if (scene.boundary.handling == BoundaryHandling::gamma && !boundary.empty()) {
-    gamma = makeGammaMethod(scene.boundary.gammaMethod,
-                            {boundary, scene.solver.kernel, step.supportRadius, scene.boundary.directions,
-                             scene.boundary.samples, scene.bounds(), &pool});
+    gamma = makeGammaMethod(
+        scene.boundary.gammaMethod,
+        {boundary, scene.solver.kernel, step.supportRadius, scene.boundary.directions, scene.boundary.samples,
+         scene.bounds(), &pool, scene.file.string() + ":/boundary/gamma/method"});
     info.handling = "gamma: " + gamma.name;
     statistics.gammaPicked = gamma.name;
     statistics.gammaReason = gamma.reason;

@@ -39,10 +39,11 @@ class GammaCache : public testing::Test {
   static PickedGamma baked(const Boundary& boundary, KernelType kernel = KernelType::poly6, float h = 0.1F) {
     const auto names = gammaMethodNames();
     const auto index = static_cast<int>(std::find(names.begin(), names.end(), "baked") - names.begin());
-    return makeGammaMethod(index, {boundary, kernel, h});
+    return makeGammaMethod(
+        index, {boundary, kernel, h, 256, 1000, {}, nullptr, "scene.json:/boundary/gamma/method"});
   }
-  static bool read(const PickedGamma& picked) { return picked.reason.find("read in") != std::string::npos; }
-  static bool made(const PickedGamma& picked) { return picked.reason.find("made in") != std::string::npos; }
+  static bool read(const PickedGamma& picked) { return picked.reason.find("read from") != std::string::npos; }
+  static bool made(const PickedGamma& picked) { return picked.reason.find("made and") != std::string::npos; }
   static float at(const PickedGamma& picked, const Vec3f& p) {
     const Float4 point(p);
     GammaSample sample;
@@ -151,7 +152,7 @@ TEST_F(GammaCache, AGridBeyondMemoryIsRefusedBeforeItIsMade) {
       ADD_FAILURE() << "was accepted";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("GiB"), std::string::npos) << error.what();
-      EXPECT_EQ(error.faults().front().place, "/boundary/gamma/method");
+      EXPECT_EQ(error.faults().front().place, "scene.json:/boundary/gamma/method");
     }
   }
 }

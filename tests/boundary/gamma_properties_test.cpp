@@ -23,7 +23,10 @@ constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::
 PickedGamma make(const Boundary& boundary, std::string_view method, KernelType kernel = KernelType::poly6) {
   const auto names = gammaMethodNames();
   const auto index = static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin());
-  return makeGammaMethod(index, {boundary, kernel, kSupport, 1024});
+  Bounds region;  // of all the points below
+  region.include(Vec3d::Constant(-0.25));
+  region.include(Vec3d::Constant(0.25));
+  return makeGammaMethod(index, {boundary, kernel, kSupport, 1024, 1000, region});
 }
 
 std::vector<GammaSample> evaluate(const GammaMethod& method, const std::vector<Vec3f>& points) {

@@ -20,7 +20,7 @@ constexpr float kSupport = 0.1F;
 GammaSample sampleAt(const Boundary& boundary, std::string_view method, const Vec3d& p) {
   const auto names = gammaMethodNames();
   const auto index = static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin());
-  const PickedGamma picked = makeGammaMethod(index, {boundary, KernelType::poly6, kSupport, 1024, 50000});
+  const PickedGamma picked = makeGammaMethod(index, {boundary, KernelType::poly6, kSupport, 1024, 200000});
   const Float4 point(p.cast<float>());
   GammaSample sample;
   picked.method->evaluate({&point, 1}, {&sample, 1});

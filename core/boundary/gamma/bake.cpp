@@ -14,14 +14,14 @@ namespace {
 constexpr int kCells = GammaGrid::kCells;
 constexpr double kMostBlocks = 256.0 * 1024 * 1024;
 
-[[noreturn]] void refuse(double bytes) {
+[[noreturn]] void refuse(const std::string& place, double bytes) {
   constexpr double kGiB = 1024.0 * 1024 * 1024;
   char text[200];
   std::snprintf(text, sizeof text,
                 "expected walls that a grid of at most %.0f GiB can hold, found some that need %.1f GiB; "
                 "\"directions\" needs none, and a larger spacing a smaller one",
                 kMostGridBytes / kGiB, bytes / kGiB);
-  throw InputError("/boundary/gamma/method", text);
+  throw InputError(place, text);
 }
 
 /// A coefficient, or gamma, for the density kernel and for the kernel of the pair gradients.
@@ -144,7 +144,7 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings) {
   grid.origin = settings.region.min.cast<float>();
   const double edge = kCells * static_cast<double>(settings.cell);
   if (const double blocks = blocksIn(settings); !(blocks < kMostBlocks))
-    refuse(sizeof(std::int32_t) * blocks);
+    refuse(settings.place, sizeof(std::int32_t) * blocks);
   for (int axis = 0; axis < 3; ++axis)
     grid.size[static_cast<std::size_t>(axis)] =
         static_cast<std::int32_t>(settings.region.size()[axis] / edge) + 1;
@@ -174,7 +174,7 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings) {
     }
   }
   const double bytes = static_cast<double>(used) * GammaGrid::kBlockFloats * sizeof(float);
-  if (bytes > kMostGridBytes) refuse(bytes);
+  if (bytes > kMostGridBytes) refuse(settings.place, bytes);
   return grid;
 }
 

@@ -2,6 +2,8 @@
 // of the splines through them.
 #pragma once
 
+#include <string>
+
 #include "core/base/bounds.h"
 #include "core/base/parallel.h"
 #include "core/boundary/gamma/gamma_grid.h"
@@ -14,6 +16,7 @@ struct BakeSettings {
   float cell;           ///< (m)
   int directions;       ///< at each node
   Bounds region;        ///< what the grid covers (m)
+  std::string place;    ///< of the gamma method in the scene file, for errors
 };
 
 /// Memory that a grid may take (bytes).

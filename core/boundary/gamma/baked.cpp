@@ -2,7 +2,6 @@
 // stand still and cost much to look at. Where a thin wall is near, deep in the solid and outside the grid,
 // directions take its place.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <limits>
 
@@ -35,8 +34,12 @@ class BakedGamma final : public GammaMethod {
       reason_ = "walls without end and no fluid: 1024 directions instead of a grid";
       return;
     }
-    settings_ = {context.kernel, support_, support_ / kCellsPerSupport, kDirections,
-                 region.grown(static_cast<double>(support_))};
+    settings_ = {context.kernel,
+                 support_,
+                 support_ / kCellsPerSupport,
+                 kDirections,
+                 region.grown(static_cast<double>(support_)),
+                 context.place};
     if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_);
   }
 
@@ -53,13 +56,11 @@ class BakedGamma final : public GammaMethod {
   /// Reads the grid or makes it.
   void fill(ThreadPool* pool) {
     if (!laidOut()) return;
-    const auto start = std::chrono::steady_clock::now();
     const std::string source = readOrMake(pool);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double mebibytes = static_cast<double>(grid_.coefficients.size() * sizeof(float)) / (1024.0 * 1024);
-    char text[96];
-    std::snprintf(text, sizeof text, "a grid of %.1f MiB, %s in %.2f s", mebibytes, source.c_str(), seconds);
-    reason_ = text + kept_;
+    char text[64];
+    std::snprintf(text, sizeof text, "a grid of %.1f MiB, ", mebibytes);
+    reason_ = text + source;
   }
 
   GammaChoice choice() const override { return {"baked", reason_}; }
@@ -89,7 +90,7 @@ class BakedGamma final : public GammaMethod {
     return context;
   }
 
-  /// Says which.
+  /// Says what it did.
   std::string readOrMake(ThreadPool* pool) {
     const std::string key = keyOf(settings_);
     const std::filesystem::path folder = cacheFolder();
@@ -97,8 +98,7 @@ class BakedGamma final : public GammaMethod {
     if (!file.empty()) {
       if (std::optional<GammaGrid> known = readGrid(file, key)) {
         grid_ = *std::move(known);
-        kept_ = " from " + file.string();
-        return "read";
+        return "read from " + file.string();
       }
     }
     if (pool != nullptr) {
@@ -108,9 +108,8 @@ class BakedGamma final : public GammaMethod {
       bake(boundary_, settings_, alone, grid_);
     }
     const bool kept = !file.empty() && writeGrid(file, key, grid_);
-    kept_ = kept ? ", kept in " + file.string()
-                 : ", not kept: no folder to write to; MIGIWA_CACHE in the environment can name one";
-    return "made";
+    return kept ? "made and kept in " + file.string()
+                : "made and not kept: no folder to write to; MIGIWA_CACHE in the environment can name one";
   }
 
   /// Everything that the grid depends on.
@@ -129,7 +128,7 @@ class BakedGamma final : public GammaMethod {
   std::unique_ptr<GammaMethod> elsewhere_;
   BakeSettings settings_{};
   GammaGrid grid_;
-  std::string reason_, kept_;
+  std::string reason_;
 };
 
 }  // namespace

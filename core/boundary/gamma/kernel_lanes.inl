@@ -1,5 +1,5 @@
 // The closed forms of core/sph/kernels.h and core/sph/radial_integrals.h over vectors of Highway, for support
-// 1. Included once for every instruction set, so without #pragma once.
+// 1, as polynomials by Horner's rule. Included once for every instruction set, so without #pragma once.
 #if defined(MIGIWA_KERNEL_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef MIGIWA_KERNEL_LANES
 #undef MIGIWA_KERNEL_LANES
@@ -28,8 +28,10 @@ HWY_INLINE V horner(D d, V x, float c0, float c1, Rest... rest) {
   return hn::MulAdd(horner(d, x, c1, rest...), x, hn::Set(d, c0));
 }
 
-// Each kernel: taken(e), the part of it beyond a plane at e in [0, 1]; push(e) = -d taken / de; mass(r) =
-// G(r) and slope(r) = H(r) - H(1) of METHOD's radial integrals, r in [0, 1].
+// Each kernel: taken(e), the part of it beyond a plane at e in [0, 1]; push(e) = -d taken / de. Along a ray,
+// mass(r) = G(r) = 4 pi integral_0^r W s^2 ds, and slope(r) = integral_r^1 W' s^2 ds = H(r) - H(1): with the
+// first hit g(w) of every direction w,
+//   gamma = mean over w of G(g),   h grad gamma = 4 pi * mean over w of (H(g) - H(1)) w.
 
 struct Poly6Lanes {
   template <class D, class V>
