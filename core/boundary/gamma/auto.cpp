@@ -1,9 +1,8 @@
 // Picks the method at every point by the walls in reach there:
-//   planes at right angles, or one alone   product     closed forms
-//   two planes at any other angle          copula
-//   three or more of those, the rims of
-//   thin walls                             directions
-//   curved walls                           baked, if the grid is soon made, else directions
+//   planes at right angles, or one alone   product      closed forms
+//   planes at other angles, the rims of
+//   thin walls                             directions   where two planes meet: cheaper and closer than the
+//   copula curved walls                           baked, if the grid is soon made, else directions
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +17,7 @@ namespace migiwa {
 
 namespace {
 
-enum Pick : std::size_t { kProduct, kCopula, kDirections };
+enum Pick : std::size_t { kProduct, kDirections };
 
 class AutoGamma final : public GammaMethod {
  public:
@@ -26,7 +25,7 @@ class AutoGamma final : public GammaMethod {
       : boundary_(context.boundary),
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
-        methods_{makeProductGamma(context), makeCopulaGamma(context), makeAboutCurves(context)},
+        methods_{makeProductGamma(context), makeAboutCurves(context)},
         baked_(methods_[kDirections] != nullptr),
         curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
                              [](const auto& surface) { return surface->planar(); })) {
@@ -40,14 +39,13 @@ class AutoGamma final : public GammaMethod {
       if (flat_->rightAngled()) return;
     }
     // Gathered by method, so that each has a batch.
-    std::array<std::vector<std::size_t>, 3> picked;
+    std::array<std::vector<std::size_t>, 2> picked;
     HalfSpaces walls;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!flat_) {
         picked[pick(points[i].xyz(), walls)].push_back(i);
       } else if (flat_->obliqueAt(points[i].xyz())) {
-        flat_->inReach(points[i].xyz(), walls.tanks);
-        picked[ofPlanes(walls.tanks)].push_back(i);
+        picked[kDirections].push_back(i);
       }
     }
     std::vector<Float4> at;
@@ -72,17 +70,16 @@ class AutoGamma final : public GammaMethod {
           baked_ ? "; curved walls: " + methods_[kDirections]->choice().reason
                  : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
       if (curved_) return {curved, "all walls are curved" + why};
-      return {"product, copula, " + curved, "by the walls in reach of each particle" + why};
+      return {"product, " + curved, "by the walls in reach of each particle" + why};
     }
     if (std::any_of(surfaces.begin(), surfaces.end(),
                     [this](const auto& s) { return s->thickness() < support_; }))
       return {
-          "product, copula, directions",
+          "product, directions",
           "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
           "radius"};
     if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
-    return {"product, copula, directions",
-            "by the walls in reach of each particle: planes at various angles"};
+    return {"product, directions", "by the walls in reach of each particle: planes at various angles"};
   }
 
  private:
@@ -137,24 +134,16 @@ class AutoGamma final : public GammaMethod {
   }
 
   static Pick ofPlanes(std::span<const HalfSpace> planes) {
-    std::size_t axes = 0;
-    bool across = true;
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-      bool known = false;
-      for (std::size_t l = 0; l < k; ++l) {
-        known = known || std::abs(planes[k].normal.dot(planes[l].normal)) > 0.999F;
-        across = across && acrossEachOther(planes[k].normal, planes[l].normal);
-      }
-      if (!known) ++axes;
-    }
-    if (across) return kProduct;
-    return axes <= 2 ? kCopula : kDirections;
+    for (std::size_t k = 0; k < planes.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l)
+        if (!acrossEachOther(planes[k].normal, planes[l].normal)) return kDirections;
+    return kProduct;
   }
 
   const Boundary& boundary_;
   float support_;
   std::optional<FlatPlanes> flat_;
-  std::unique_ptr<GammaMethod> methods_[3];
+  std::unique_ptr<GammaMethod> methods_[2];
   bool baked_;   ///< the last is a grid
   bool curved_;  ///< all walls are
 };
