@@ -87,7 +87,9 @@ CellGrid::Places CellGrid::row(int x0, int x1, int y, int z) const {
   x0 = std::max(x0, 0);
   x1 = std::min(x1, size_[0] - 1);
   if (x0 > x1) return {};
-  const auto first = static_cast<std::size_t>((z * size_[1] + y) * size_[0]);
+  const std::size_t first =
+      (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) *
+      static_cast<std::size_t>(size_[0]);
   return {start_[first + static_cast<std::size_t>(x0)], start_[first + static_cast<std::size_t>(x1) + 1]};
 }
 

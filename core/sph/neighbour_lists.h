@@ -1,9 +1,10 @@
 // Who is within the support radius of whom, listed for passes that take several neighbours at a time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,40 @@
 #include "core/sph/cell_grid.h"
 
 namespace migiwa {
+
+/// A list's byte offsets seen as indices.
+class NeighbourIndices {
+ public:
+  explicit NeighbourIndices(std::span<const std::uint32_t> offsets) : offsets_(offsets) {}
+
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = std::uint32_t;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const std::uint32_t*;
+    using reference = std::uint32_t;
+
+    Iterator() = default;
+    explicit Iterator(const std::uint32_t* offset) : offset_(offset) {}
+    std::uint32_t operator*() const { return *offset_ / static_cast<std::uint32_t>(sizeof(Float4)); }
+    Iterator& operator++() {
+      ++offset_;
+      return *this;
+    }
+    Iterator operator++(int) { return Iterator(offset_++); }
+    bool operator==(const Iterator&) const = default;
+
+   private:
+    const std::uint32_t* offset_ = nullptr;
+  };
+  Iterator begin() const { return Iterator(offsets_.data()); }
+  Iterator end() const { return Iterator(offsets_.data() + offsets_.size()); }
+  std::size_t size() const { return offsets_.size(); }
+
+ private:
+  std::span<const std::uint32_t> offsets_;
+};
 
 /// Lists of neighbours j != i with |x_i - x_j| < radius, for particles that are already in grid order. A
 /// neighbour is stored as the offset in bytes of its Float4, and every list is filled up to whole groups with
@@ -39,11 +74,7 @@ class NeighbourLists {
     return {list, wholeGroups(count_[i])};
   }
   /// Indices of the neighbours of i.
-  auto of(std::size_t i) const {
-    return groups(i).first(count_[i]) | std::views::transform([](std::uint32_t offset) {
-             return offset / static_cast<std::uint32_t>(sizeof(Float4));
-           });
-  }
+  NeighbourIndices of(std::size_t i) const { return NeighbourIndices(groups(i).first(count_[i])); }
   /// Keeps those neighbours j of i for which kept(j). Lists of different particles can be thinned at once.
   template <class Kept>
   void keep(std::size_t i, const Kept& kept) {
