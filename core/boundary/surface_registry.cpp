@@ -2,8 +2,10 @@
 
 #include "core/base/registry.h"
 #include "core/boundary/box.h"
+#include "core/boundary/mesh_surface.h"
 #include "core/boundary/plane.h"
 #include "core/boundary/polynomial.h"
+#include "core/boundary/slim_surface.h"
 #include "core/boundary/sphere.h"
 
 namespace migiwa {
@@ -25,6 +27,8 @@ constexpr std::array kShapes{
     Entry{"box", make<Box>},
     Entry{"sphere", make<Sphere>},
     Entry{"polynomial", make<Polynomial>},
+    Entry{"slim", make<SlimSurface>},
+    Entry{"mesh", make<MeshSurface>},
 };
 
 }  // namespace

@@ -168,9 +168,13 @@ DistanceGrid::Sample DistanceGrid::at(const Vec3f& p) const {
   const Vec3f beyond = (raw - local) * cell_;
   if (beyond.squaredNorm() > cell_ * cell_ * 1e-4F) {
     // Outside the grid: on from its border, away from the foot of the border's point.
-    const Vec3f away = beyond + sample.distance * sample.gradient;
-    sample.distance = std::copysign(away.norm(), sample.distance);
-    sample.gradient = away / sample.distance;
+    // Near the medial axis nothing tells where that is: across, then.
+    const float steep = sample.gradient.norm();
+    const bool known = steep > 0.5F;
+    const Vec3f away = beyond + (known ? sample.distance / steep : 0) * sample.gradient;
+    const float length = known ? away.norm() : std::hypot(beyond.norm(), sample.distance);
+    sample.distance = std::copysign(length, sample.distance);
+    sample.gradient = away / std::copysign(std::max(away.norm(), 1e-12F), sample.distance);
   }
   return sample;
 }

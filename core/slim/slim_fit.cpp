@@ -11,8 +11,6 @@ namespace migiwa {
 
 namespace {
 
-/// Summed weight that every point has at least.
-constexpr float kCoverage = 0.2F;
 /// Balls fitted at a time, before any of them is accepted.
 constexpr std::size_t kBatch = 128;
 /// Points that a fit has at least where there are enough, by degree.
@@ -30,7 +28,7 @@ class Covering {
     tolerance_ = tolerance;
     fixedRadius_ = fixedRadius;
     const auto points = levels_.points();
-    std::vector<float> covered(points.size(), 0);
+    std::vector<std::uint8_t> covered(points.size(), 0);
     std::vector<SlimNode> nodes;
     std::vector<std::uint32_t> batch, reached;
     std::vector<SlimNode> fitted(kBatch);
@@ -38,7 +36,7 @@ class Covering {
     while (next < points.size()) {
       batch.clear();
       for (; next < points.size() && batch.size() < kBatch; ++next)
-        if (covered[next] < kCoverage) batch.push_back(static_cast<std::uint32_t>(next));
+        if (covered[next] == 0) batch.push_back(static_cast<std::uint32_t>(next));
       constexpr std::size_t kAtATime = 8;
       pool_.run((batch.size() + kAtATime - 1) / kAtATime, [&](std::size_t chunk) {
         const std::size_t end = std::min(batch.size(), (chunk + 1) * kAtATime);
@@ -46,14 +44,12 @@ class Covering {
       });
       // In the order of the points, so that threads make no difference.
       for (std::size_t k = 0; k < batch.size(); ++k) {
-        if (covered[batch[k]] >= kCoverage) continue;
+        if (covered[batch[k]] != 0) continue;
         const SlimNode& node = fitted[k];
         nodes.push_back(node);
-        levels_.withinAll(node.centre, node.radius, reached);
-        const float inverse = 1 / (node.radius * node.radius);
-        for (const std::uint32_t index : reached)
-          covered[index] += slimWeight((points[index].position - node.centre).squaredNorm() * inverse);
-        covered[batch[k]] = std::max(covered[batch[k]], kCoverage);
+        levels_.withinAll(node.centre, kSlimCore * node.radius, reached);
+        for (const std::uint32_t index : reached) covered[index] = 1;
+        covered[batch[k]] = 1;
       }
       if (progress) progress(static_cast<double>(next) / static_cast<double>(points.size()));
     }

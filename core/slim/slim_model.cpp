@@ -12,10 +12,9 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 8;
 /// Foot points are looked for on the blended surface up to this many cells of the coarse grid from it.
-constexpr float kNearCells = 3;
-/// Part of a ball whose polynomial is sampled for the coarse grid: every point of the surface is that deep in
-/// some ball.
-constexpr float kSampledReach = 0.65F;
+constexpr float kNearCells = 6;
+/// Part of a ball whose polynomial is sampled for the coarse grid: a little more than its core.
+constexpr float kSampledReach = 1.1F * kSlimCore;
 
 }  // namespace
 
@@ -223,8 +222,12 @@ float SlimModel::nearReach() const {
   return distances_ ? kNearCells * distances_->cell() : 0;
 }
 
-float SlimModel::distanceAtLeast(const Vec3f& p) const {
-  return std::abs(distances_->at(p).distance) - distances_->cell();
+float SlimModel::coarseDistance(const Vec3f& p) const {
+  return distances_->at(p).distance;
+}
+
+float SlimModel::coarseError() const {
+  return distances_->cell();
 }
 
 SlimModel::Nearest SlimModel::nearest(const Vec3f& p) const {

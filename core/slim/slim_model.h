@@ -49,8 +49,10 @@ class SlimModel {
   /// surface itself, to 1e-3 of a node's radius and the square of the distance over the radius of curvature;
   /// beyond, by interpolation in a coarse grid of distances, to about an eighth of its cell.
   Nearest nearest(const Vec3f& p) const;
-  /// Below |distance| for sure, and cheap: what is farther from the surface than anyone asks needs no more.
-  float distanceAtLeast(const Vec3f& p) const;
+  /// Signed distance from the coarse grid alone, within coarseError() of the right one around the surface:
+  /// what is farther away than anyone asks needs no more.
+  float coarseDistance(const Vec3f& p) const;
+  float coarseError() const;
   float nearReach() const;
 
   /// Calls visit(index) for every node whose ball comes nearer than `reach` to p.

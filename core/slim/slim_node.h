@@ -16,6 +16,9 @@ namespace migiwa {
 /// Coefficients of a polynomial in u and v: 1, u, v, u^2, uv, v^2, u^3, u^2 v, u v^2, v^3.
 inline constexpr int kSlimTerms = 10;
 inline constexpr int kLargestSlimDegree = 3;
+/// Part of a ball's radius, its core: every point of the surface lies in the core of some ball, where that
+/// has a weight of at least 0.08.
+inline constexpr float kSlimCore = 0.55F;
 constexpr int slimTerms(int degree) {
   return (degree + 1) * (degree + 2) / 2;
 }
