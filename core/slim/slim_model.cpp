@@ -251,11 +251,13 @@ SlimModel::Nearest SlimModel::nearest(const Vec3f& p) const {
     const float distance = normal.dot(p - foot) + value.f / steep;
     // Off by more than the coarse grid can be: a crease or another sheet has led the way elsewhere.
     if (std::abs(distance - coarse.distance) > 1.5F * cell) break;
-    result = {distance, normal};
     const Vec3f next = p - distance * normal;
-    const bool there = (next - foot).squaredNorm() < 1e-4F * cell * cell;
+    const float step = (next - foot).norm();
     foot = next;
-    if (there) break;
+    // Far away, where the surface bends within the distance, the feet may take long to meet: the grid is
+    // right enough there.
+    if (step < 0.1F * cell || std::abs(coarse.distance) < cell) result = {distance, normal};
+    if (step < 0.01F * cell) break;
   }
   return result;
 }

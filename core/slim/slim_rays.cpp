@@ -183,9 +183,71 @@ void hitPlane(const SlimNode& node, const RaysFrom& rays, const DirectionBins::B
                      {t[lane], hitWeight(squared[lane]), kSamePassage * node.radius, towards[lane] > 0});
 }
 
-/// The same for a polynomial of higher degree.
-void hitPolynomial(const SlimNode& node, const NodeAlongRays& along, const RaysFrom& rays,
-                   const DirectionBins::Bin& bin, bool contradicts) {
+/// The same for a polynomial of degree 2: both zeros of the quadratic along each ray.
+class QuadricAlongRays {
+ public:
+  QuadricAlongRays(const SlimNode& node, const RaysFrom& rays)
+      : node_(node), rays_(rays), bitangent_(node.bitangent()), offset_(rays.origin - node.centre) {
+    const float u = node.tangent.dot(offset_), v = bitangent_.dot(offset_);
+    const auto& c = node.coefficients;
+    du_ = c[1] + 2 * u * c[3] + v * c[4];
+    dv_ = c[2] + 2 * v * c[5] + u * c[4];
+    value_ = node.normal.dot(offset_) - (c[0] + u * (c[1] + u * c[3]) + v * (c[2] + v * c[5]) + u * v * c[4]);
+    // Along a direction w, the polynomial's slope is slope_ . w.
+    slope_ = node.normal - du_ * node.tangent - dv_ * bitangent_;
+  }
+
+  void hit(const DirectionBins::Bin& bin, bool contradicts) const {
+    const auto along = [&](const Vec3f& axis) {
+      return axis.x() * bin.x + axis.y() * bin.y + axis.z() * bin.z;
+    };
+    const float limit = kHitReach * node_.radius, inverse = 1 / (limit * limit);
+    const FourFloats first = along(slope_);
+    if (contradicts) {
+      for (std::size_t lane = 0; lane < DirectionBins::kLanes; ++lane)
+        if ((first[lane] > 0) == rays_.inside && bin.index[lane] != DirectionBins::kNone)
+          rays_.lists.add(bin.index[lane], {0, hitWeight(offset_.squaredNorm() * inverse),
+                                            kSamePassage * node_.radius, rays_.inside});
+      return;
+    }
+    const auto& c = node_.coefficients;
+    const FourFloats a = along(node_.tangent), b = along(bitangent_), middle = along(offset_);
+    const FourFloats bend = -(a * a * c[3] + a * b * c[4] + b * b * c[5]);
+    const FourFloats discriminant = first * first - 4.0F * value_ * bend;
+    FourFloats root;
+    for (std::size_t lane = 0; lane < DirectionBins::kLanes; ++lane)
+      root[lane] = std::sqrt(std::max(discriminant[lane], 0.0F));
+    // Without cancellation: the sum of two numbers of the same sign, and the product of the zeros.
+    const FourFloats sign = first < 0.0F ? FourFloats{} - 1.0F : FourFloats{} + 1.0F;
+    const FourFloats q = -0.5F * (first + sign * root);
+    report(bin, q / bend, middle, -sign, discriminant, inverse);
+    report(bin, value_ / q, middle, sign, discriminant, inverse);
+  }
+
+ private:
+  /// `rising`: sign of the polynomial's slope at t.
+  void report(const DirectionBins::Bin& bin, const FourFloats& t, const FourFloats& middle,
+              const FourFloats& rising, const FourFloats& discriminant, float inverse) const {
+    const FourFloats squared = (t * (t + 2.0F * middle) + offset_.squaredNorm()) * inverse;
+    const auto valid = (t > 0.0F) & (t < rays_.reach) & (squared < 1.0F) & (discriminant > 0.0F);
+    std::uint64_t halves[2];
+    std::memcpy(halves, &valid, sizeof halves);
+    if ((halves[0] | halves[1]) == 0) return;
+    for (std::size_t lane = 0; lane < DirectionBins::kLanes; ++lane)
+      if (valid[lane] != 0 && bin.index[lane] != DirectionBins::kNone)
+        rays_.lists.add(bin.index[lane],
+                        {t[lane], hitWeight(squared[lane]), kSamePassage * node_.radius, rising[lane] > 0});
+  }
+
+  const SlimNode& node_;
+  const RaysFrom& rays_;
+  Vec3f bitangent_, offset_, slope_;
+  float du_, dv_, value_;
+};
+
+/// The same for a polynomial of degree 3.
+void hitCubic(const SlimNode& node, const NodeAlongRays& along, const RaysFrom& rays,
+              const DirectionBins::Bin& bin, bool contradicts) {
   const float limit = kHitReach * node.radius, inverse = 1 / (limit * limit);
   for (std::size_t lane = 0; lane < DirectionBins::kLanes; ++lane) {
     if (bin.index[lane] == DirectionBins::kNone) continue;
@@ -266,10 +328,14 @@ void slimPassages(const SlimModel& model, const Vec3f& origin, bool inside, cons
       visitNode(node, [&](const DirectionBins::Bin& bin, bool contradicts) {
         hitPlane(node, rays, bin, contradicts);
       });
+    } else if (model.degree() == 2) {
+      const QuadricAlongRays quadric(node, rays);
+      visitNode(node,
+                [&](const DirectionBins::Bin& bin, bool contradicts) { quadric.hit(bin, contradicts); });
     } else {
       const NodeAlongRays along(node, origin, model.degree());
       visitNode(node, [&](const DirectionBins::Bin& bin, bool contradicts) {
-        hitPolynomial(node, along, rays, bin, contradicts);
+        hitCubic(node, along, rays, bin, contradicts);
       });
     }
   });

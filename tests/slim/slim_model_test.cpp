@@ -51,7 +51,7 @@ TEST(SlimModel, DistanceAndNormalOfATorus) {
       expectNear(*model, shape, unseen, offset, 0.002, normalError);
     // Beyond the reach of the foot points, from the coarse grid.
     for (const double offset : {-0.25, 0.2}) expectNear(*model, shape, unseen, offset, 0.006, 0.35);
-    expectNear(*model, shape, unseen, 0.4, 0.02, 0.3);
+    expectNear(*model, shape, unseen, 0.3, 0.02, 0.35);
   }
 }
 
