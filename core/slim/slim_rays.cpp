@@ -367,4 +367,25 @@ bool slimFirstPassage(const SlimModel& model, const Vec3f& from, const Vec3f& to
   return true;
 }
 
+float slimThickness(const SlimModel& model) {
+  float thinnest = kNever;
+  if (!model.closed()) return thinnest;
+  const auto reach = static_cast<float>(model.bounds().size().norm());
+  // A few thousand places tell; walls do not get thin at a point.
+  const std::size_t step = 1 + model.nodes().size() / 4000;
+  for (std::size_t k = 0; k < model.nodes().size(); k += step) {
+    const SlimNode& node = model.nodes()[k];
+    const Vec3f inwards = -node.normal;
+    const Vec3f from = node.centre + 0.2F * node.radius * inwards;
+    const float nearest = std::min(thinnest, reach);
+    float at = 0;
+    Vec3f normal;
+    // Out through the opposite side, not back through a crease.
+    if (slimFirstPassage(model, from, from + nearest * inwards, true, at, normal) &&
+        normal.dot(inwards) > 0.5F)
+      thinnest = std::min(thinnest, at * nearest + 0.2F * node.radius);
+  }
+  return thinnest;
+}
+
 }  // namespace migiwa

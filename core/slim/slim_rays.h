@@ -24,4 +24,7 @@ void slimPassages(const SlimModel& model, const Vec3f& origin, bool inside, cons
 bool slimFirstPassage(const SlimModel& model, const Vec3f& from, const Vec3f& to, bool leaving, float& at,
                       Vec3f& normal);
 
+/// The least way through the solid (m), inwards from the nodes' centres; infinite for an open surface.
+float slimThickness(const SlimModel& model);
+
 }  // namespace migiwa

@@ -91,9 +91,9 @@ TEST(ShippedScenes, BowlIsThePapers) {
   EXPECT_EQ(scene.solver.maxIterations, 10);
   // Both sides of the wall, and the rounded rim, where the formula says.
   Vec3f normal;
-  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -0.9F, 0}, normal), 0.1F, 0.01F);
-  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -1.1F, 0}, normal), -0.1F, 0.03F);
-  EXPECT_NEAR(scene.surfaces.at(0)->distance({1.1F, 0.2F, 0}, normal), 0.1F, 0.01F);
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -1.1F, 0}, normal), 0.1F, 0.01F);
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -1.3F, 0}, normal), -0.1F, 0.03F);
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({1.3F, 0.2F, 0}, normal), 0.1F, 0.01F);
 }
 
 }  // namespace

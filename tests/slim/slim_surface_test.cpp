@@ -134,6 +134,17 @@ TEST(SlimRays, ThinPlateLetsRaysOutAgain) {
   EXPECT_FALSE(slimFirstPassage(model, {0, 0.25F, 0}, {0.5F, 0.1F, 0}, false, at, normal));
 }
 
+TEST(SlimRays, ThicknessIsTheLeastWayThroughTheSolid) {
+  ThreadPool pool(2);
+  SlimFitOptions options;
+  options.degree = 2;
+  options.tolerance = 0.002;
+  const SlimModel torus(fitSlim(testing::ExactTorus{}.points(30000), options, pool), 2, true, pool);
+  EXPECT_NEAR(slimThickness(torus), 0.8, 0.02);
+  const SlimModel bowl(fitSlim(bowlPoints({Vec3d::Zero(), 1, 0.15}, 60000), options, pool), 2, true, pool);
+  EXPECT_NEAR(slimThickness(bowl), 0.15, 0.01);
+}
+
 TEST(SlimSurface, ProjectionEndsAtTheMargin) {
   const auto data = fittedSphere(2, 0.5);
   constexpr float kMargin = 0.06F;
