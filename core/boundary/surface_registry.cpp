@@ -23,12 +23,8 @@ std::unique_ptr<Surface> make() {
 }
 
 constexpr std::array kShapes{
-    Entry{"plane", make<Plane>},
-    Entry{"box", make<Box>},
-    Entry{"sphere", make<Sphere>},
-    Entry{"polynomial", make<Polynomial>},
-    Entry{"slim", make<SlimSurface>},
-    Entry{"mesh", make<MeshSurface>},
+    Entry{"plane", make<Plane>},           Entry{"box", make<Box>},          Entry{"sphere", make<Sphere>},
+    Entry{"polynomial", make<Polynomial>}, Entry{"slim", make<SlimSurface>}, Entry{"mesh", make<MeshSurface>},
 };
 
 }  // namespace
