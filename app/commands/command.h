@@ -38,5 +38,6 @@ Command simulateCommand();
 Command checkCommand();
 Command gammaCommand();
 Command summaryCommand();
+Command slimCommand();
 
 }  // namespace migiwa

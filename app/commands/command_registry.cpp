@@ -3,7 +3,8 @@
 namespace migiwa {
 
 std::vector<Command> allCommands() {
-  return {viewCommand(), renderCommand(), simulateCommand(), checkCommand(), gammaCommand(), summaryCommand()};
+  return {viewCommand(),  renderCommand(),  simulateCommand(), checkCommand(),
+          gammaCommand(), summaryCommand(), slimCommand()};
 }
 
 }  // namespace migiwa

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -44,6 +45,14 @@ struct FieldDoc {
   Presence presence = Presence::optional;
 };
 
+/// A file that a scene names.
+struct FileName {
+  std::string written;         ///< as in the scene; empty: none
+  std::filesystem::path path;  ///< relative to the working folder
+
+  bool empty() const { return written.empty(); }
+};
+
 /// Visits one JSON object's fields in order. A reader overwrites the values, a writer only looks at them.
 class FieldVisitor {
  public:
@@ -54,6 +63,10 @@ class FieldVisitor {
   virtual void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) = 0;
   virtual void boolean(std::string_view key, bool& value, const FieldDoc& doc) = 0;
   virtual void text(std::string_view key, std::string& value, const FieldDoc& doc) = 0;
+  /// A file name; relative ones are relative to what is being read.
+  virtual void file(std::string_view key, FileName& value, const FieldDoc& doc) {
+    text(key, value.written, doc);
+  }
   virtual void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) = 0;
   /// Two numbers, such as the ends of a colour range. `present`, if given, says whether the key is there.
   virtual void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
@@ -78,6 +91,11 @@ class FieldVisitor {
   /// Reports what only the struct itself can see, such as min beyond max, at the key or, for an empty key, at
   /// the object itself. Left out where the key is faulty already. Ignored by writers.
   virtual void fault(std::string_view key, std::string_view message) = 0;
+  /// Reports what is valid and probably not meant, or was repaired. Ignored by writers.
+  virtual void warning(std::string_view key, std::string_view message) {
+    static_cast<void>(key);
+    static_cast<void>(message);
+  }
   /// Whether these keys hold what was written: false after a fault in one of them. A check across several
   /// keys asks first, so that it never complains about a default that took the place of a faulty value.
   virtual bool sound(std::initializer_list<std::string_view> keys) const {

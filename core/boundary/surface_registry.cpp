@@ -2,8 +2,10 @@
 
 #include "core/base/registry.h"
 #include "core/boundary/box.h"
+#include "core/boundary/mesh_surface.h"
 #include "core/boundary/plane.h"
 #include "core/boundary/polynomial.h"
+#include "core/boundary/slim_surface.h"
 #include "core/boundary/sphere.h"
 
 namespace migiwa {
@@ -21,10 +23,8 @@ std::unique_ptr<Surface> make() {
 }
 
 constexpr std::array kShapes{
-    Entry{"plane", make<Plane>},
-    Entry{"box", make<Box>},
-    Entry{"sphere", make<Sphere>},
-    Entry{"polynomial", make<Polynomial>},
+    Entry{"plane", make<Plane>},           Entry{"box", make<Box>},          Entry{"sphere", make<Sphere>},
+    Entry{"polynomial", make<Polynomial>}, Entry{"slim", make<SlimSurface>}, Entry{"mesh", make<MeshSurface>},
 };
 
 }  // namespace

@@ -58,7 +58,7 @@ void describeFluid(FieldVisitor& visitor, Scene& scene) {
         fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
         fields.boolean("trim", source.trim,
                        {"", "Leave out particles less than half a spacing inside the fluid side of a wall."});
-        if (spacingKnown && fields.sound({"min", "max", "center", "radius"}) &&
+        if (spacingKnown && fields.sound({"min", "max", "center", "radius", "file", "transform"}) &&
             source.count(scene.particleSpacing) < 1)
           fields.fault("",
                        "expected a region with room for a particle, found one thinner than half of "

@@ -21,6 +21,10 @@ void FaultList::add(std::string_view pointer, std::string message) {
   pointers_.emplace_back(pointer);
 }
 
+void FaultList::warn(std::string_view pointer, std::string_view message) {
+  warnings_.push_back(std::string(pointer) + ": " + std::string(message));
+}
+
 bool FaultList::anyBelow(std::string_view pointer) const {
   return std::any_of(pointers_.begin(), pointers_.end(),
                      [&](const std::string& found) { return isBelow(found, pointer); });

@@ -1,6 +1,7 @@
 // Faults of one scene while it is read: JSON pointers in, places that the user wrote out.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,11 @@ class FaultList {
   FaultList(std::string file, std::vector<std::string> overridden);
 
   void add(std::string_view pointer, std::string message);
+  /// What is valid and probably not meant: `/pointer: message`.
+  void warn(std::string_view pointer, std::string_view message);
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Where relative file names start: the folder of the scene.
+  std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
   std::size_t size() const { return faults_.size(); }
   bool empty() const { return faults_.empty(); }
   /// Whether there is a fault at the pointer or below it.
@@ -27,6 +33,7 @@ class FaultList {
   std::vector<std::string> overridden_;
   std::vector<std::string> pointers_;
   std::vector<Fault> faults_;
+  std::vector<std::string> warnings_;
 };
 
 /// Whether `pointer` is `ancestor` or lies below it.

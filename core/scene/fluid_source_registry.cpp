@@ -2,6 +2,7 @@
 
 #include "core/base/registry.h"
 #include "core/scene/box_source.h"
+#include "core/scene/mesh_source.h"
 #include "core/scene/sphere_source.h"
 
 namespace migiwa {
@@ -21,6 +22,7 @@ std::unique_ptr<FluidSource> make() {
 constexpr std::array kSources{
     Entry{"box", make<BoxSource>},
     Entry{"sphere", make<SphereSource>},
+    Entry{"mesh", make<MeshSource>},
 };
 
 }  // namespace

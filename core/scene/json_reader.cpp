@@ -106,6 +106,11 @@ void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& 
   }
 }
 
+void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc) {
+  text(key, value.written, doc);
+  value.path = value.empty() ? std::filesystem::path() : faults_.folder() / value.written;
+}
+
 bool JsonReader::numbers(std::string_view key, const FieldDoc& doc, std::size_t size, double* values) {
   const std::string expected = withUnit("an array of " + std::to_string(size) + " numbers", doc);
   const Json* const found = find(key, doc, expected);
@@ -235,6 +240,10 @@ void JsonReader::fault(std::string_view key, std::string_view message) {
   if (faulty_.contains(key)) return;
   faults_.add(key.empty() ? pointer_ : childPointer(pointer_, key), std::string(message));
   if (!key.empty()) faulty_.emplace(key);
+}
+
+void JsonReader::warning(std::string_view key, std::string_view message) {
+  faults_.warn(key.empty() ? pointer_ : childPointer(pointer_, key), message);
 }
 
 bool JsonReader::sound(std::initializer_list<std::string_view> keys) const {

@@ -19,6 +19,7 @@ class JsonReader final : public FieldVisitor {
   void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) override;
   void boolean(std::string_view key, bool& value, const FieldDoc& doc) override;
   void text(std::string_view key, std::string& value, const FieldDoc& doc) override;
+  void file(std::string_view key, FileName& value, const FieldDoc& doc) override;
   void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override;
   void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
                const FieldDoc& doc) override;
@@ -31,6 +32,7 @@ class JsonReader final : public FieldVisitor {
   void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc& doc,
                const std::function<void(FieldVisitor&, int)>& fields) override;
   void fault(std::string_view key, std::string_view message) override;
+  void warning(std::string_view key, std::string_view message) override;
   bool sound(std::initializer_list<std::string_view> keys) const override;
 
  private:

@@ -60,6 +60,7 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
   JsonReader::read(document.root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
   checkWhole(scene, faults);
   if (!faults.empty()) throw InputError(faults.faults());
+  scene.warnings = faults.warnings();
   if (scene.name.empty()) scene.name = scene.stem();
   return scene;
 }

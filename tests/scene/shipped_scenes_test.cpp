@@ -1,15 +1,25 @@
 // What is true of every scene in scenes/, and of each one by itself.
+#include <algorithm>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
+#include "core/boundary/boundary.h"
 #include "core/scene/particle_limit.h"
 #include "core/scene/scene_reader.h"
+#include "core/simulation/fill.h"
 
 namespace migiwa {
 namespace {
 
 const std::filesystem::path kScenes = MIGIWA_SOURCE_DIR "/scenes";
+
+/// Particles of all sources before trimming.
+double filled(const Scene& scene) {
+  std::vector<Vec3d> centers;
+  for (const auto& source : scene.fluid) source->fill(scene.particleSpacing, centers);
+  return static_cast<double>(centers.size());
+}
 
 TEST(ShippedScenes, AllAreReadAndSayWhatTheyShow) {
   int scenes = 0;
@@ -30,15 +40,19 @@ TEST(ShippedScenes, AllFluidStartsInsideTheWalls) {
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
     if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
     SCOPED_TRACE(entry.path());
-    const Scene scene = readScene(entry.path());
+    Scene scene = readScene(entry.path());
     const double margin = 0.499 * scene.particleSpacing;
-    for (const auto& source : scene.fluid) {
-      std::vector<Vec3d> centers;
-      source->fill(scene.particleSpacing, centers);
-      Vec3f normal;
-      for (const Vec3d& p : centers)
-        for (const auto& surface : scene.surfaces)
-          ASSERT_GE(static_cast<double>(surface->distance(p.cast<float>(), normal)), margin) << p.transpose();
+    const Boundary boundary(scene.surfaces);
+    Particles particles;
+    fillScene(scene, boundary, particles);
+    EXPECT_TRUE(scene.warnings.empty());
+    for (const Float4& p : particles.position)
+      ASSERT_GE(static_cast<double>(boundary.distance(p.xyz())), margin) << p.xyz().transpose();
+    // Only a vessel without flat walls is filled by trimming.
+    const bool flat =
+        std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [](const auto& s) { return s->planar(); });
+    if (flat) {
+      EXPECT_EQ(static_cast<double>(particles.size()), filled(scene)) << "trimmed by a wall";
     }
   }
 }
@@ -68,6 +82,18 @@ TEST(ShippedScenes, CornerDropHasAFewThousandParticles) {
   EXPECT_GT(particleCount(scene), 2000);
   EXPECT_LT(particleCount(scene), 5000);
   EXPECT_EQ(scene.duration, 2);
+}
+
+TEST(ShippedScenes, BowlIsThePapers) {
+  const Scene scene = readScene(kScenes / "bowl.json");
+  EXPECT_NEAR(filled(scene), 12000, 200);
+  EXPECT_EQ(scene.solver.tolerance, 0.04);
+  EXPECT_EQ(scene.solver.maxIterations, 10);
+  // Both sides of the wall, and the rounded rim, where the formula says.
+  Vec3f normal;
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -1.1F, 0}, normal), 0.1F, 0.01F);
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({0, -1.3F, 0}, normal), -0.1F, 0.03F);
+  EXPECT_NEAR(scene.surfaces.at(0)->distance({1.3F, 0.2F, 0}, normal), 0.1F, 0.01F);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct Room {
 constexpr Room kRooms[] = {
     {"core/base", 0},
     {"core/sph", 1},
+    {"core/slim", 1},
     {"core/boundary", 1},
     {"core/effects/effect.h", 1},
     {"core/solver", 2},
@@ -81,9 +82,10 @@ struct Library {
 
 const Library kLibraries[] = {
     {"nlohmann/",
-     {{"core/scene/"}, {"core/io/"}, {"app/commands/"}, {"tests/"}},
+     {{"core/scene/"}, {"core/io/"}, {"core/slim/", 1}, {"app/commands/"}, {"tests/"}},
      "JSON is read and written at the rim"},
     {"CLI/", {{"app/commands/"}, {"app/command_line."}, {"tests/"}}, "the command line ends in app/commands"},
+    {"assimp/", {{"core/slim/", 1}}, "one file reads meshes"},
     {"glad/",
      {{"app/render/"}, {"app/platform/"}, {"app/ui/", 1}, {"tests/render/"}},
      "OpenGL stays in the renderer"},

@@ -1,0 +1,94 @@
+#include "core/boundary/slim_source.h"
+
+#include <deque>
+#include <mutex>
+
+#include "core/slim/slim_file.h"
+
+namespace migiwa {
+
+namespace {
+
+/// A bowl's points: enough for a few thousand nodes.
+constexpr std::size_t kBowlPoints = 200000;
+/// Fits that are kept.
+constexpr std::size_t kMostKept = 4;
+
+std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
+  ThreadPool pool(0);
+  auto result = std::make_shared<SlimWallData>();
+  if (source.kind == SlimSource::Kind::slimFile) {
+    SlimData data = readSlimFile(source.file);
+    transformNodes(data.nodes, source.transform);
+    result->model = std::make_unique<const SlimModel>(std::move(data.nodes), data.degree, data.closed, pool);
+    return result;
+  }
+  OrientedPoints points;
+  if (source.kind == SlimSource::Kind::bowl) {
+    points = bowlPoints(source.bowl, kBowlPoints);
+    for (OrientedPoint& point : points.points)
+      point = {source.transform.point(point.position), source.transform.direction(point.normal)};
+  } else {
+    ImportedShape shape = importShape(source.file);
+    transformShape(shape, source.transform);
+    points = fitPoints(shape, source.nodes);
+    result->notes = std::move(shape.notes);
+  }
+  SlimFitOptions options;
+  options.degree = source.degree;
+  options.tolerance = source.tolerance;
+  options.nodes = source.nodes;
+  if (source.tolerance <= 0 && source.nodes <= 0) {
+    Bounds bounds;
+    for (const OrientedPoint& point : points.points) bounds.include(point.position.cast<double>());
+    options.tolerance = defaultSlimTolerance(bounds);
+  }
+  result->model =
+      std::make_unique<const SlimModel>(fitSlim(points, options, pool), source.degree, points.closed, pool);
+  return result;
+}
+
+/// Of the file when it was read: a fit of what has changed since is of no use.
+struct FileStamp {
+  std::filesystem::file_time_type time;
+  std::uintmax_t size = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+
+FileStamp stampOf(const SlimSource& source) {
+  std::error_code ignored;
+  if (source.kind == SlimSource::Kind::bowl) return {};
+  return {std::filesystem::last_write_time(source.file, ignored),
+          std::filesystem::file_size(source.file, ignored)};
+}
+
+struct Kept {
+  SlimSource source;
+  FileStamp stamp;
+  std::shared_ptr<const SlimWallData> data;
+};
+
+}  // namespace
+
+bool SlimSource::operator==(const SlimSource& other) const {
+  return kind == other.kind && file == other.file && bowl.center == other.bowl.center &&
+         bowl.radius == other.bowl.radius && bowl.thickness == other.bowl.thickness &&
+         degree == other.degree && tolerance == other.tolerance && nodes == other.nodes &&
+         transform == other.transform;
+}
+
+std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {
+  // The only state that outlives a scene: comparisons and restarts read the same scene again and again, and a
+  // fit takes seconds. Fits do not depend on when and where they are made, so nobody sees a difference.
+  static std::mutex mutex;
+  static std::deque<Kept> kept;
+  const FileStamp stamp = stampOf(source);
+  const std::lock_guard lock(mutex);
+  for (const Kept& known : kept)
+    if (known.source == source && known.stamp == stamp) return known.data;
+  kept.push_front({source, stamp, prepare(source)});
+  if (kept.size() > kMostKept) kept.pop_back();
+  return kept.front().data;
+}
+
+}  // namespace migiwa

@@ -1,0 +1,38 @@
+// What a SLIM wall is made of, as scenes name it: a file that migiwa slim wrote, or a mesh, point cloud or
+// formula to fit. Fits are kept for the next scene that asks for the same.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/slim/bowl.h"
+#include "core/slim/slim_fitting.h"
+
+namespace migiwa {
+
+struct SlimSource {
+  enum class Kind { slimFile, mesh, bowl };
+
+  Kind kind = Kind::mesh;
+  std::filesystem::path file;  ///< of slimFile and mesh
+  Bowl bowl;
+  int degree = 2;        ///< of the fit
+  double tolerance = 0;  ///< of the fit (m); 0 with nodes 0: a thousandth of the diagonal
+  int nodes = 0;         ///< of the fit
+  Transform transform;
+
+  bool operator==(const SlimSource& other) const;
+};
+
+/// A surface ready for use, with what is worth saying about it.
+struct SlimWallData {
+  std::unique_ptr<const SlimModel> model;
+  std::vector<std::string> notes;  ///< of the import
+};
+
+/// Reads, fits and prepares; throws InputError when the file does not allow it.
+std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source);
+
+}  // namespace migiwa

@@ -1,0 +1,37 @@
+// The inside of a closed mesh, full of fluid.
+#pragma once
+
+#include "core/scene/fluid_source.h"
+#include "core/slim/transform.h"
+#include "core/slim/triangle_mesh.h"
+
+namespace migiwa {
+
+/// The lattice has round(length / spacing) cells along each axis of the mesh's bounds, centred on them; the
+/// cells whose centres lie in the mesh are filled.
+class MeshSource final : public FluidSource {
+ public:
+  MeshSource() = default;
+  explicit MeshSource(TriangleMesh mesh);
+
+  void describe(FieldVisitor& visitor) override;
+  double count(double spacing) const override;
+  void fill(double spacing, std::vector<Vec3d>& out) const override;
+  Bounds bounds() const override { return mesh_.bounds(); }
+
+ private:
+  /// What mesh_ was read from.
+  struct Read {
+    std::filesystem::path path;
+    Transform transform;
+  };
+  void measure();
+
+  FileName file_;
+  Transform transform_;
+  Read read_;
+  TriangleMesh mesh_;
+  double volume_ = 0, area_ = 0;  ///< (m^3, m^2)
+};
+
+}  // namespace migiwa

@@ -1,0 +1,105 @@
+#include "core/slim/point_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/base/bounds.h"
+#include "core/slim/random_sequence.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr double kPointsPerCell = 4;
+constexpr std::size_t kFewest = 64;  // points of the coarsest level
+
+CellCoordinates cellOf(const Vec3f& p, float inverseCell) {
+  return {static_cast<std::int32_t>(std::floor(p.x() * inverseCell)),
+          static_cast<std::int32_t>(std::floor(p.y() * inverseCell)),
+          static_cast<std::int32_t>(std::floor(p.z() * inverseCell))};
+}
+
+}  // namespace
+
+PointLevels::PointLevels(const std::vector<OrientedPoint>& points) : points_(points) {
+  RandomSequence random(1);
+  for (std::size_t k = points_.size(); k > 1; --k)
+    std::swap(points_[k - 1], points_[static_cast<std::size_t>(random.below(k))]);
+  if (points_.empty()) return;
+
+  Bounds bounds;
+  for (const OrientedPoint& point : points_) bounds.include(point.position.cast<double>());
+  const double extent = std::max(bounds.size().maxCoeff(), 1e-6);
+  // Points lie on a surface: the number in an occupied cell goes with the square of the edge.
+  double cell = extent / std::sqrt(static_cast<double>(points_.size()) / kPointsPerCell);
+  const double smallest = extent * 4e-6;
+  levels_.emplace_back();
+  for (int round = 0; round < 4; ++round) {
+    cell = std::clamp(cell, smallest, extent);
+    const double mean = build(levels_[0], points_.size(), static_cast<float>(cell));
+    if (std::abs(mean / kPointsPerCell - 1) < 0.2) break;
+    if (round < 3) cell *= std::sqrt(kPointsPerCell / mean);
+  }
+  // A smooth surface meets about 1.5 cells of a grid in an area of one cell's face.
+  spacing_ = static_cast<float>(cell / std::sqrt(1.5 * kPointsPerCell));
+  for (std::size_t count = points_.size() / 4; count >= kFewest; count /= 4) {
+    cell *= 2;
+    levels_.emplace_back();
+    build(levels_.back(), count, static_cast<float>(cell));
+  }
+}
+
+double PointLevels::build(Level& level, std::size_t count, float cell) const {
+  level.inverseCell = 1 / cell;
+  std::vector<std::uint64_t> keys(count);
+  for (std::size_t k = 0; k < count; ++k) keys[k] = cellKey(cellOf(points_[k].position, level.inverseCell));
+  level.order.resize(count);
+  std::iota(level.order.begin(), level.order.end(), 0U);
+  std::sort(level.order.begin(), level.order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+  std::vector<std::uint64_t> sorted(count);
+  for (std::size_t k = 0; k < count; ++k) sorted[k] = keys[level.order[k]];
+  level.hash.build(sorted);
+  return static_cast<double>(count) / static_cast<double>(level.hash.cells());
+}
+
+void PointLevels::within(const Vec3f& centre, float radius, float wanted,
+                         std::vector<std::uint32_t>& out) const {
+  const float expected = std::numbers::pi_v<float> * radius * radius / (spacing_ * spacing_);
+  std::size_t level = 0;
+  for (float left = expected / 4; left >= wanted && level + 1 < levels_.size(); left /= 4) ++level;
+  collect(levels_[level], centre, radius, out);
+}
+
+void PointLevels::withinAll(const Vec3f& centre, float radius, std::vector<std::uint32_t>& out) const {
+  collect(levels_[0], centre, radius, out);
+}
+
+void PointLevels::collect(const Level& level, const Vec3f& centre, float radius,
+                          std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const float squared = radius * radius;
+  const auto take = [&](std::uint32_t index) {
+    if ((points_[index].position - centre).squaredNorm() < squared) out.push_back(index);
+  };
+  const CellCoordinates low = cellOf(centre - Vec3f::Constant(radius), level.inverseCell);
+  const CellCoordinates high = cellOf(centre + Vec3f::Constant(radius), level.inverseCell);
+  const double box =
+      (double(high.x) - low.x + 1) * (double(high.y) - low.y + 1) * (double(high.z) - low.z + 1);
+  if (box > 2 * static_cast<double>(level.order.size())) {
+    for (const std::uint32_t index : level.order) take(index);
+    return;
+  }
+  for (std::int32_t z = low.z; z <= high.z; ++z) {
+    for (std::int32_t y = low.y; y <= high.y; ++y) {
+      for (std::int32_t x = low.x; x <= high.x; ++x) {
+        const CellHash::Range range = level.hash.find(cellKey({x, y, z}));
+        for (std::uint32_t k = range.begin; k < range.end; ++k) take(level.order[k]);
+      }
+    }
+  }
+}
+
+}  // namespace migiwa

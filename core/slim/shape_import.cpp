@@ -1,0 +1,137 @@
+#include "core/slim/shape_import.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "core/base/error.h"
+#include "core/slim/cloud_repair.h"
+#include "core/slim/mesh_repair.h"
+#include "core/slim/mesh_sampling.h"
+
+namespace migiwa {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Coordinates beyond this leave no digits for the shape.
+constexpr float kLargestCoordinateRead = 1e7F;
+
+struct Raw {
+  TriangleMesh mesh;
+  std::vector<OrientedPoint> points;  ///< of parts without faces
+  std::size_t pointsWithoutNormal = 0;
+};
+
+void requireFile(const fs::path& file) {
+  std::error_code code;
+  const std::string expected = "expected a mesh or a point cloud, found ";
+  if (fs::is_directory(file, code)) throw InputError(file.string(), expected + "a folder");
+  if (fs::exists(file, code)) {
+    if (fs::is_regular_file(file, code) && fs::file_size(file, code) == 0)
+      throw InputError(file.string(), expected + "an empty file");
+    return;
+  }
+  std::string remedy;
+  if (file.string().find("/glmark2/") != std::string::npos)
+    remedy = "; it comes with Debian's package glmark2-data (sudo apt-get install glmark2-data)";
+  throw InputError(file.string(), expected + "no such file" + remedy);
+}
+
+void requireFinite(const fs::path& file, const Vec3f& p, const char* kind, std::size_t number) {
+  if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kLargestCoordinateRead) return;
+  throw InputError(file.string(), "expected coordinates that are finite and at most 1e7, found (" +
+                                      std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " +
+                                      std::to_string(p.z()) + ") in " + kind + " " +
+                                      std::to_string(number + 1));
+}
+
+Vec3f vectorOf(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+void addMesh(const fs::path& file, const aiMesh& part, const aiMatrix4x4& transform, Raw& raw) {
+  const aiMatrix3x3 linear(transform);
+  if (part.mNumFaces == 0) {
+    for (unsigned k = 0; k < part.mNumVertices; ++k) {
+      const Vec3f p = vectorOf(transform * part.mVertices[k]);
+      requireFinite(file, p, "point", raw.points.size() + raw.pointsWithoutNormal);
+      const Vec3f n = part.mNormals != nullptr ? vectorOf(linear * part.mNormals[k]) : Vec3f(Vec3f::Zero());
+      const float length = n.norm();
+      if (length > 1e-6F && std::isfinite(length)) {
+        raw.points.push_back({p, n / length});
+      } else {
+        ++raw.pointsWithoutNormal;
+      }
+    }
+    return;
+  }
+  // Only corners of triangles count: readers leave other vertices behind.
+  for (unsigned k = 0; k < part.mNumFaces; ++k) {
+    const aiFace& face = part.mFaces[k];
+    if (face.mNumIndices != 3) continue;
+    std::array<std::uint32_t, 3> triangle{};
+    for (unsigned corner = 0; corner < 3; ++corner) {
+      const Vec3f p = vectorOf(transform * part.mVertices[face.mIndices[corner]]);
+      requireFinite(file, p, "triangle", raw.mesh.triangles.size());
+      triangle[corner] = static_cast<std::uint32_t>(raw.mesh.vertices.size());
+      raw.mesh.vertices.push_back(p);
+    }
+    raw.mesh.triangles.push_back(triangle);
+  }
+}
+
+void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
+             Raw& raw) {
+  const aiMatrix4x4 transform = parent * node.mTransformation;
+  for (unsigned k = 0; k < node.mNumMeshes; ++k)
+    addMesh(file, *scene.mMeshes[node.mMeshes[k]], transform, raw);
+  for (unsigned k = 0; k < node.mNumChildren; ++k) addNode(file, scene, *node.mChildren[k], transform, raw);
+}
+
+}  // namespace
+
+Bounds ImportedShape::bounds() const {
+  Bounds bounds = mesh.bounds();
+  for (const OrientedPoint& point : cloud.points) bounds.include(point.position.cast<double>());
+  return bounds;
+}
+
+ImportedShape importShape(const fs::path& file) {
+  requireFile(file);
+  Assimp::Importer importer;
+  // Everything but positions, faces and the normals of points is left out.
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw InputError(file.string(),
+                     "expected a mesh (OBJ, PLY, STL, ...) or a point cloud with normals, found a file that "
+                     "cannot be read as one: " +
+                         std::string(importer.GetErrorString()));
+  Raw raw;
+  addNode(file, *scene, *scene->mRootNode, aiMatrix4x4(), raw);
+
+  ImportedShape shape;
+  if (!raw.mesh.triangles.empty()) {
+    shape.mesh = std::move(raw.mesh);
+    shape.closed = repairMesh(shape.mesh, file.string(), shape.notes);
+    return shape;
+  }
+  if (raw.pointsWithoutNormal > 0)
+    throw InputError(file.string(), "expected a normal (nx, ny, nz) for every point, found " +
+                                        std::to_string(raw.pointsWithoutNormal) + " points without one");
+  shape.cloud.points = std::move(raw.points);
+  shape.closed = repairCloud(shape.cloud.points, file.string(), shape.notes);
+  shape.cloud.closed = shape.closed;
+  return shape;
+}
+
+OrientedPoints fitPoints(const ImportedShape& shape, int nodes) {
+  if (!shape.isMesh()) return shape.cloud;
+  return {samplePoints(shape.mesh, sampleCount(shape.mesh, nodes), 1), shape.closed};
+}
+
+}  // namespace migiwa

@@ -1,0 +1,202 @@
+#include "core/slim/slim_file.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/slim/base64.h"
+
+namespace migiwa {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "migiwa-slim";
+constexpr int kVersion = 1;
+constexpr std::size_t kMostNodes = 50'000'000;
+constexpr const char* kLayout[] = {"centre", "radius", "normal", "tangent", "coefficients", "error"};
+static_assert(std::endian::native == std::endian::little, "nodes are written as they lie in memory");
+
+std::size_t floatsPerNode(int degree) {
+  return 3 + 1 + 3 + 3 + static_cast<std::size_t>(slimTerms(degree)) + 1;
+}
+
+[[noreturn]] void fail(const std::string& name, const std::string& pointer, const std::string& message) {
+  throw InputError(name + ":" + pointer, message);
+}
+
+std::string shown(const Json& value) {
+  std::string text =
+      value.is_discarded() ? "nothing" : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 40) text = text.substr(0, 40) + "...";
+  return text;
+}
+
+/// The value of a key, which must be there.
+const Json& at(const Json& object, const char* key, const std::string& name, const std::string& expected) {
+  const auto found = object.find(key);
+  if (found == object.end()) fail(name, std::string("/") + key, "expected " + expected + ", found nothing");
+  return *found;
+}
+
+std::size_t wholeNumber(const Json& root, const char* key, const std::string& name, std::size_t least,
+                        std::size_t most) {
+  const std::string expected =
+      "a whole number in [" + std::to_string(least) + ", " + std::to_string(most) + "]";
+  const Json& value = at(root, key, name, expected);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most)
+    fail(name, std::string("/") + key, "expected " + expected + ", found " + shown(value));
+  return static_cast<std::size_t>(value.get<std::uint64_t>());
+}
+
+SlimStatistics readStatistics(const Json& root, const std::string& name) {
+  SlimStatistics statistics;
+  const Json& object = at(root, "statistics", name, "an object");
+  if (!object.is_object()) fail(name, "/statistics", "expected an object, found " + shown(object));
+  for (const char* key : {"largest", "mean"}) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_number() || !(found->get<double>() >= 0))
+      fail(name, std::string("/statistics/") + key,
+           "expected a number that is not negative, found " +
+               (found == object.end() ? "nothing" : shown(*found)));
+    (std::strcmp(key, "mean") == 0 ? statistics.mean : statistics.largest) = found->get<double>();
+  }
+  if (const auto source = object.find("source"); source != object.end() && source->is_string())
+    statistics.source = source->get<std::string>();
+  if (const auto points = object.find("points"); points != object.end() && points->is_number_unsigned())
+    statistics.points = points->get<std::size_t>();
+  return statistics;
+}
+
+SlimNode readNode(const float* values, int degree) {
+  SlimNode node;
+  node.centre = {values[0], values[1], values[2]};
+  node.radius = values[3];
+  node.normal = {values[4], values[5], values[6]};
+  node.tangent = {values[7], values[8], values[9]};
+  const auto terms = static_cast<std::size_t>(slimTerms(degree));
+  for (std::size_t k = 0; k < terms; ++k) node.coefficients[k] = values[10 + k];
+  node.error = values[10 + terms];
+  return node;
+}
+
+/// What is wrong with a node, or nothing.
+std::string faultOf(const SlimNode& node) {
+  bool finite = node.centre.allFinite() && node.normal.allFinite() && node.tangent.allFinite();
+  finite = finite && std::isfinite(node.error) && std::isfinite(node.radius);
+  for (const float c : node.coefficients) finite = finite && std::isfinite(c);
+  if (!finite) return "expected finite numbers, found one that is not";
+  if (node.centre.cwiseAbs().maxCoeff() > 1e7F)
+    return "expected a centre within 1e7 of the origin, found one beyond";
+  if (!(node.radius > 0)) return "expected a positive radius, found " + std::to_string(node.radius);
+  if (std::abs(node.normal.norm() - 1) > 1e-3F || std::abs(node.tangent.norm() - 1) > 1e-3F ||
+      std::abs(node.normal.dot(node.tangent)) > 1e-3F)
+    return "expected a unit normal and a unit tangent across it, found others";
+  return {};
+}
+
+}  // namespace
+
+std::string slimFileText(const SlimData& data) {
+  std::vector<float> values;
+  values.reserve(data.nodes.size() * floatsPerNode(data.degree));
+  for (const SlimNode& node : data.nodes) {
+    for (const Vec3f* v : {&node.centre, &node.normal, &node.tangent}) {
+      values.insert(values.end(), v->data(), v->data() + 3);
+      if (v == &node.centre) values.push_back(node.radius);
+    }
+    values.insert(values.end(), node.coefficients.begin(),
+                  node.coefficients.begin() + slimTerms(data.degree));
+    values.push_back(node.error);
+  }
+  Json statistics = Json::object();
+  statistics["source"] = data.statistics.source;
+  statistics["largest"] = data.statistics.largest;
+  statistics["mean"] = data.statistics.mean;
+  statistics["points"] = data.statistics.points;
+  Json layout = Json::array();
+  for (const char* part : kLayout) layout.push_back(part);
+  Json root = Json::object();
+  root["format"] = kFormat;
+  root["version"] = kVersion;
+  root["degree"] = data.degree;
+  root["closed"] = data.closed;
+  root["nodes"] = data.nodes.size();
+  root["statistics"] = std::move(statistics);
+  root["layout"] = std::move(layout);
+  root["data"] = base64(std::as_bytes(std::span(values)));
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+SlimData parseSlimFile(const std::string& text, const std::string& name) {
+  Json root;
+  try {
+    root = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    fail(name, "byte " + std::to_string(error.byte),
+         "expected a file of a SLIM surface (JSON), found one that ends or breaks here");
+  }
+  if (!root.is_object() || root.find("format") == root.end() || root["format"] != kFormat)
+    fail(name, "/format",
+         std::string("expected \"") + kFormat +
+             "\", the mark of a SLIM surface that migiwa slim has written, found " +
+             (root.is_object() && root.find("format") != root.end() ? shown(root["format"]) : "nothing"));
+  const auto version = static_cast<int>(wholeNumber(root, "version", name, 0, 1'000'000));
+  if (version != kVersion)
+    fail(name, "/version",
+         "expected 1, the version that this program reads, found " + std::to_string(version));
+
+  SlimData data;
+  data.degree = static_cast<int>(wholeNumber(root, "degree", name, 1, kLargestSlimDegree));
+  const std::size_t count = wholeNumber(root, "nodes", name, 1, kMostNodes);
+  const Json& closed = at(root, "closed", name, "true or false");
+  if (!closed.is_boolean()) fail(name, "/closed", "expected true or false, found " + shown(closed));
+  data.closed = closed.get<bool>();
+  data.statistics = readStatistics(root, name);
+  Json layout = Json::array();
+  for (const char* part : kLayout) layout.push_back(part);
+  if (at(root, "layout", name, shown(layout)) != layout)
+    fail(name, "/layout", "expected " + layout.dump() + ", found " + shown(root["layout"]));
+
+  const Json& encoded = at(root, "data", name, "a text in base64");
+  std::vector<std::byte> bytes;
+  if (!encoded.is_string() || !decodeBase64(encoded.get_ref<const std::string&>(), bytes))
+    fail(name, "/data", "expected a text in base64, found something else");
+  const std::size_t width = floatsPerNode(data.degree);
+  if (bytes.size() != count * width * sizeof(float))
+    fail(name, "/data",
+         "expected " + std::to_string(count * width * sizeof(float)) + " bytes for " + std::to_string(count) +
+             " nodes, found " + std::to_string(bytes.size()));
+  std::vector<float> values(count * width);
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  data.nodes.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    data.nodes.push_back(readNode(&values[k * width], data.degree));
+    if (const std::string fault = faultOf(data.nodes.back()); !fault.empty())
+      fail(name, "/data: node " + std::to_string(k), fault);
+  }
+  return data;
+}
+
+SlimData readSlimFile(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::exists(file, code))
+    throw InputError(file.string(),
+                     "expected a file of a SLIM surface, found no such file; migiwa slim writes them");
+  if (std::filesystem::is_directory(file, code))
+    throw InputError(file.string(), "expected a file of a SLIM surface, found a folder");
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in)
+    throw InputError(file.string(), "expected a file of a SLIM surface, found one that cannot be read");
+  return parseSlimFile(text.str(), file.string());
+}
+
+}  // namespace migiwa

@@ -1,0 +1,24 @@
+// Files of fitted SLIM surfaces: a JSON header with the fit's figures, and the nodes as one array of 32-bit
+// floats in base64, little-endian, node by node in the order that "layout" names.
+//   { "format": "migiwa-slim", "version": 1, "degree": 2, "closed": true, "nodes": 4998,
+//     "statistics": { "source": "bunny.obj", "largest": 0.005, "mean": 0.0004, "points": 100000 },
+//     "layout": ["centre", "radius", "normal", "tangent", "coefficients", "error"], "data": "..." }
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/slim/slim_fitting.h"
+
+namespace migiwa {
+
+/// Text of a file that holds `data`.
+std::string slimFileText(const SlimData& data);
+
+/// Reads such a file. Throws InputError, with the file and the JSON pointer or the byte as its place, for a
+/// missing, truncated or foreign one.
+SlimData readSlimFile(const std::filesystem::path& file);
+/// The same for a text in memory; `name` stands in for the file in faults.
+SlimData parseSlimFile(const std::string& text, const std::string& name);
+
+}  // namespace migiwa

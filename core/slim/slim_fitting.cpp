@@ -1,0 +1,80 @@
+#include "core/slim/slim_fitting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/slim/mesh_sampling.h"
+
+namespace migiwa {
+
+namespace {
+constexpr std::size_t kMeasuredPoints = 100000;
+}
+
+double defaultSlimTolerance(const Bounds& bounds) {
+  return 1e-3 * bounds.size().norm();
+}
+
+SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoint>& points,
+                           ThreadPool& pool) {
+  struct Sums {
+    double largest = 0, sum = 0;
+  };
+  const Sums sums = parallelReduce(
+      pool, points.size(), Sums{},
+      [&](std::size_t begin, std::size_t end) {
+        Sums part;
+        for (std::size_t k = begin; k < end; ++k) {
+          const double distance = std::abs(static_cast<double>(model.nearest(points[k].position).distance));
+          part.largest = std::max(part.largest, distance);
+          part.sum += distance;
+        }
+        return part;
+      },
+      [](const Sums& a, const Sums& b) {
+        return Sums{std::max(a.largest, b.largest), a.sum + b.sum};
+      });
+  SlimStatistics statistics;
+  statistics.largest = sums.largest;
+  statistics.mean = points.empty() ? 0 : sums.sum / static_cast<double>(points.size());
+  statistics.points = points.size();
+  return statistics;
+}
+
+SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool,
+                  const std::function<void(double)>& progress) {
+  if (!(options.tolerance > 0) && options.nodes <= 0 && !(options.radius > 0))
+    options.tolerance = defaultSlimTolerance(shape.bounds());
+  const OrientedPoints points = fitPoints(shape, options.nodes);
+  SlimData data;
+  data.nodes = fitSlim(points, options, pool, progress);
+  data.degree = options.degree;
+  data.closed = shape.closed;
+  const SlimModel model(data.nodes, data.degree, data.closed, pool);
+  data.statistics = measureSlim(
+      model, shape.isMesh() ? samplePoints(shape.mesh, kMeasuredPoints, 2) : shape.cloud.points, pool);
+  return data;
+}
+
+void transformShape(ImportedShape& shape, const Transform& transform) {
+  for (Vec3f& vertex : shape.mesh.vertices) vertex = transform.point(vertex);
+  for (OrientedPoint& point : shape.cloud.points)
+    point = {transform.point(point.position), transform.direction(point.normal)};
+}
+
+void transformNodes(std::vector<SlimNode>& nodes, const Transform& transform) {
+  const auto scale = static_cast<float>(transform.scale);
+  for (SlimNode& node : nodes) {
+    node.centre = transform.point(node.centre);
+    node.radius *= scale;
+    node.error *= scale;
+    node.normal = transform.direction(node.normal);
+    const Vec3f tangent = transform.direction(node.tangent);
+    node.tangent = (tangent - tangent.dot(node.normal) * node.normal).normalized();
+    // A term of degree k has the unit m^(1 - k).
+    for (std::size_t k = 0; k < node.coefficients.size(); ++k)
+      node.coefficients[k] *= k == 0 ? scale : k < 3 ? 1 : k < 6 ? 1 / scale : 1 / (scale * scale);
+  }
+}
+
+}  // namespace migiwa

@@ -1,0 +1,248 @@
+// Meshes and clouds from files, good and bad.
+#include "core/slim/shape_import.h"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/slim/slim_fitting.h"
+#include "tests/slim/exact_shapes.h"
+
+namespace migiwa {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file in a folder of the test's own.
+class ShapeImport : public ::testing::Test {
+ protected:
+  ShapeImport() {
+    folder_ = fs::temp_directory_path() / (std::string("migiwa_shape_import_") +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  ~ShapeImport() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  std::string faultOf(const fs::path& file) const {
+    try {
+      importShape(file);
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_TRUE(text.starts_with(file.string() + ": ")) << text;
+      return text.substr(std::min(text.size(), file.string().size() + 2));
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+};
+
+const std::string kCubeVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+/// Outward.
+const std::string kCubeFaces = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+
+double volumeOf(const TriangleMesh& mesh) {
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += mesh.vertices[a].cast<double>().dot(
+                  mesh.vertices[b].cast<double>().cross(mesh.vertices[c].cast<double>())) /
+              6;
+  return volume;
+}
+
+TEST_F(ShapeImport, ReadsACube) {
+  const ImportedShape cube = importShape(write("cube.obj", kCubeVertices + kCubeFaces));
+  EXPECT_TRUE(cube.isMesh());
+  EXPECT_TRUE(cube.closed);
+  EXPECT_TRUE(cube.notes.empty());
+  EXPECT_EQ(cube.mesh.vertices.size(), 8U);
+  EXPECT_EQ(cube.mesh.triangles.size(), 12U);
+  EXPECT_NEAR(volumeOf(cube.mesh), 1, 1e-6);
+}
+
+TEST_F(ShapeImport, WeldsStl) {
+  std::string text = "solid t\n";
+  const char* corners[] = {"0 0 0", "1 0 0", "0 1 0", "0 0 1"};
+  for (const auto& face :
+       {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{0, 3, 2}, std::array{1, 2, 3}}) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : face) text += std::string("vertex ") + corners[corner] + "\n";
+    text += "endloop\nendfacet\n";
+  }
+  const ImportedShape shape = importShape(write("t.stl", text + "endsolid t\n"));
+  EXPECT_TRUE(shape.closed);
+  EXPECT_EQ(shape.mesh.vertices.size(), 4U);
+  EXPECT_NEAR(volumeOf(shape.mesh), 1.0 / 6, 1e-6);
+}
+
+TEST_F(ShapeImport, TurnsFacesThatFaceTheOtherWay) {
+  const std::string someFlipped = "f 1 2 3 4\nf 5 6 7 8\nf 1 5 6 2\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+  const ImportedShape some = importShape(write("some.obj", kCubeVertices + someFlipped));
+  EXPECT_NEAR(volumeOf(some.mesh), 1, 1e-6);
+  ASSERT_EQ(some.notes.size(), 1U);
+  EXPECT_EQ(some.notes[0], "4 triangles were turned to face outwards as the others do");
+  const std::string allFlipped = "f 1 2 3 4\nf 8 7 6 5\nf 5 6 2 1\nf 7 8 4 3\nf 6 7 3 2\nf 4 8 5 1\n";
+  EXPECT_NEAR(volumeOf(importShape(write("all.obj", kCubeVertices + allFlipped)).mesh), 1, 1e-6);
+}
+
+TEST_F(ShapeImport, AHollowFacesItsInside) {
+  std::string inner;
+  for (const char* corner : {"1 1 1", "2 1 1", "2 2 1", "1 2 1", "1 1 2", "2 1 2", "2 2 2", "1 2 2"})
+    inner += std::string("v ") + corner + "\n";
+  const std::string outer = "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 0 0 3\nv 3 0 3\nv 3 3 3\nv 0 3 3\n";
+  const std::string innerFaces =
+      "f 9 12 11 10\nf 13 14 15 16\nf 9 10 14 13\nf 11 12 16 15\nf 10 11 15 14\nf 9 13 16 12\n";
+  const ImportedShape shape = importShape(write("hollow.obj", outer + inner + kCubeFaces + innerFaces));
+  EXPECT_NEAR(volumeOf(shape.mesh), 26, 1e-5);
+}
+
+TEST_F(ShapeImport, LeavesOutWhatIsThereTwiceOrFlat) {
+  const ImportedShape shape =
+      importShape(write("twice.obj", kCubeVertices + kCubeFaces + "f 5 6 7\nf 1 1 2\n"));
+  EXPECT_TRUE(shape.closed);
+  EXPECT_EQ(shape.mesh.triangles.size(), 12U);
+  EXPECT_EQ(shape.notes.size(), 2U);
+}
+
+TEST_F(ShapeImport, SaysWhereAMeshIsOpen) {
+  const std::string lid = "f 5 6 7 8\n";
+  std::string faces = kCubeFaces;
+  faces.erase(faces.find(lid), lid.size());
+  const ImportedShape shape = importShape(write("open.obj", kCubeVertices + faces));
+  EXPECT_FALSE(shape.closed);
+  ASSERT_EQ(shape.notes.size(), 1U);
+  EXPECT_TRUE(shape.notes[0].starts_with(
+      "the mesh is open: 4 edges have a triangle on one side only, the first near (0"))
+      << shape.notes[0];
+}
+
+TEST_F(ShapeImport, RefusesWhatIsNoSurface) {
+  EXPECT_EQ(faultOf(folder_ / "none.obj"), "expected a mesh or a point cloud, found no such file");
+  EXPECT_EQ(faultOf(folder_), "expected a mesh or a point cloud, found a folder");
+  EXPECT_EQ(faultOf(write("empty.obj", "")), "expected a mesh or a point cloud, found an empty file");
+  EXPECT_TRUE(faultOf(write("text.ply", "Dear Sir,")).starts_with("expected a mesh (OBJ, PLY, STL, ...)"));
+  EXPECT_EQ(faultOf(write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
+            "expected at least 4 triangles, found 1; a box or a plane is a shape of its own");
+  EXPECT_TRUE(faultOf(write("nan.obj", "v nan 0 0\n" + kCubeVertices + kCubeFaces))
+                  .starts_with("expected coordinates that are finite"));
+  EXPECT_EQ(faultOf("/nowhere/glmark2/models/bunny.obj"),
+            "expected a mesh or a point cloud, found no such file; it comes with Debian's package "
+            "glmark2-data (sudo "
+            "apt-get install glmark2-data)");
+}
+
+TEST_F(ShapeImport, RefusesEdgesOfThreeTriangles) {
+  EXPECT_EQ(faultOf(write("fin.obj", kCubeVertices + "v 3 0 0\n" + kCubeFaces + "f 1 2 9\n")),
+            "expected edges of at most two triangles (a manifold), found 1 triangle more on edges that have "
+            "two already, "
+            "the first at (0.5, 0, 0)");
+}
+
+TEST_F(ShapeImport, RefusesAMoebiusStrip) {
+  std::string text;
+  constexpr int kSteps = 12;
+  for (int k = 0; k < kSteps; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kSteps;
+    for (const double side : {-0.3, 0.3}) {
+      const double across = 1 + side * std::cos(angle / 2);
+      text += "v " + std::to_string(across * std::cos(angle)) + " " +
+              std::to_string(across * std::sin(angle)) + " " + std::to_string(side * std::sin(angle / 2)) +
+              "\n";
+    }
+  }
+  for (int k = 0; k < kSteps; ++k) {
+    const int a = 2 * k + 1, b = a + 1, last = k + 1 == kSteps ? 1 : 0;
+    const int c = last != 0 ? 2 : a + 2, d = last != 0 ? 1 : a + 3;
+    text += "f " + std::to_string(a) + " " + std::to_string(c) + " " + std::to_string(d) + "\nf " +
+            std::to_string(a) + " " + std::to_string(d) + " " + std::to_string(b) + "\n";
+  }
+  EXPECT_TRUE(faultOf(write("moebius.obj", text))
+                  .starts_with("expected a surface with two sides, found one like a Moebius strip"));
+}
+
+std::string cloudText(const std::vector<OrientedPoint>& points, bool normals) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(points.size()) +
+                     "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  text += "end_header\n";
+  for (const OrientedPoint& point : points) {
+    for (const Vec3f* v : {&point.position, &point.normal}) {
+      if (v == &point.normal && !normals) break;
+      for (int axis = 0; axis < 3; ++axis) text += std::to_string((*v)[axis]) + " ";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(ShapeImport, ReadsACloudAndRepairsIt) {
+  std::vector<OrientedPoint> points = testing::ExactSphere{}.points(2000).points;
+  for (std::size_t k = 0; k < points.size(); k += 40) points[k].normal = -points[k].normal;
+  points.push_back(points[7]);
+  for (OrientedPoint& point : points) point.normal = -point.normal;  // and all of them inwards
+  const ImportedShape shape = importShape(write("cloud.ply", cloudText(points, true)));
+  EXPECT_FALSE(shape.isMesh());
+  EXPECT_TRUE(shape.closed);
+  ASSERT_EQ(shape.cloud.points.size(), 2000U);
+  for (const OrientedPoint& point : shape.cloud.points) ASSERT_GT(point.normal.dot(point.position), 0.9F);
+  ASSERT_EQ(shape.notes.size(), 3U);
+  EXPECT_EQ(shape.notes[1], "50 normals were turned to agree with their neighbours");
+}
+
+TEST_F(ShapeImport, RefusesACloudWithoutNormalsOrWithTooFewPoints) {
+  const std::vector<OrientedPoint> points = testing::ExactSphere{}.points(100).points;
+  EXPECT_EQ(faultOf(write("bare.ply", cloudText(points, false))),
+            "expected a normal (nx, ny, nz) for every point, found 100 points without one");
+  EXPECT_EQ(faultOf(write("few.ply", cloudText({points.begin(), points.begin() + 9}, true))),
+            "expected a mesh, or at least 50 points with normals, found 9 points");
+}
+
+TEST(Bunny, IsToldInsideFromOutside) {
+  const fs::path file = "/usr/share/glmark2/models/bunny.obj";
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file << ": install glmark2-data";
+  const ImportedShape bunny = importShape(file);
+  EXPECT_TRUE(bunny.closed);
+  EXPECT_TRUE(bunny.notes.empty());
+  ThreadPool pool(0);
+  SlimFitOptions options;
+  options.degree = 2;
+  options.tolerance = 0.01;
+  const SlimData data = fitShape(bunny, options, pool);
+  EXPECT_LT(data.statistics.mean, 0.003);
+  const SlimModel model(data.nodes, 2, true, pool);
+  // Against the parity of crossings of a ray with the mesh.
+  const Bounds bounds = bunny.bounds();
+  int inside = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3d share(std::fmod(k * 0.8191725, 1.0), std::fmod(k * 0.6710436, 1.0),
+                      std::fmod(k * 0.5497005, 1.0));
+    const Vec3d p = bounds.min + share.cwiseProduct(bounds.size());
+    int crossings = 0;
+    for (const auto& [a, b, c] : bunny.mesh.triangles) {
+      const Vec3d A = bunny.mesh.vertices[a].cast<double>() - p,
+                  B = bunny.mesh.vertices[b].cast<double>() - p,
+                  C = bunny.mesh.vertices[c].cast<double>() - p;
+      const auto side = [](const Vec3d& x, const Vec3d& y) { return x.x() * y.y() - x.y() * y.x(); };
+      const double u = side(B, C), v = side(C, A), w = side(A, B);
+      if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) continue;
+      if ((u * A.z() + v * B.z() + w * C.z()) / (u + v + w) > 0) ++crossings;
+    }
+    const auto distance = static_cast<double>(model.nearest(p.cast<float>()).distance);
+    inside += crossings % 2;
+    if (std::abs(distance) > 0.01) {
+      EXPECT_EQ(distance < 0, crossings % 2 == 1) << p.transpose() << ": " << distance;
+    }
+  }
+  EXPECT_GT(inside, 40);
+}
+
+}  // namespace
+}  // namespace migiwa

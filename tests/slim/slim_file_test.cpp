@@ -1,0 +1,98 @@
+// Files of SLIM surfaces: what is written is read, and what is not one is refused with its place.
+#include "core/slim/slim_file.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/slim/exact_shapes.h"
+
+namespace migiwa {
+namespace {
+
+SlimData someData(int degree) {
+  ThreadPool pool(1);
+  SlimFitOptions options;
+  options.degree = degree;
+  options.tolerance = 0.02;
+  SlimData data;
+  data.nodes = fitSlim(testing::ExactSphere{}.points(2000), options, pool);
+  data.degree = degree;
+  data.statistics = {"ball.ply", 0.02, 0.003, 2000};
+  return data;
+}
+
+std::string faultOf(const std::string& text) {
+  try {
+    parseSlimFile(text, "x.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(SlimFile, ReadsWhatItWrote) {
+  for (int degree = 1; degree <= 3; ++degree) {
+    const SlimData written = someData(degree);
+    const SlimData read = parseSlimFile(slimFileText(written), "x.json");
+    EXPECT_EQ(read.degree, degree);
+    EXPECT_TRUE(read.closed);
+    EXPECT_EQ(read.statistics.source, "ball.ply");
+    EXPECT_EQ(read.statistics.largest, 0.02);
+    EXPECT_EQ(read.statistics.mean, 0.003);
+    EXPECT_EQ(read.statistics.points, 2000U);
+    ASSERT_EQ(read.nodes.size(), written.nodes.size());
+    for (std::size_t k = 0; k < read.nodes.size(); ++k) {
+      EXPECT_EQ(read.nodes[k].centre, written.nodes[k].centre);
+      EXPECT_EQ(read.nodes[k].radius, written.nodes[k].radius);
+      EXPECT_EQ(read.nodes[k].normal, written.nodes[k].normal);
+      EXPECT_EQ(read.nodes[k].tangent, written.nodes[k].tangent);
+      EXPECT_EQ(read.nodes[k].coefficients, written.nodes[k].coefficients);
+      EXPECT_EQ(read.nodes[k].error, written.nodes[k].error);
+    }
+  }
+}
+
+TEST(SlimFile, RefusesEveryPrefix) {
+  const std::string text = slimFileText(someData(1));
+  const std::size_t end = text.find_last_of('}');
+  for (std::size_t size = 0; size <= end; size += 1 + size / 50)
+    EXPECT_TRUE(faultOf(text.substr(0, size)).starts_with("x.json:byte ")) << size;
+}
+
+TEST(SlimFile, RefusesForeignAndDamagedOnesWithThePlace) {
+  const std::string text = slimFileText(someData(1));
+  EXPECT_TRUE(faultOf("{\"format\": 1}").starts_with("x.json:/format: expected \"migiwa-slim\""));
+  EXPECT_TRUE(faultOf("[]").starts_with("x.json:/format: "));
+  EXPECT_EQ(faultOf(replaced(text, "\"version\": 1", "\"version\": 2")),
+            "x.json:/version: expected 1, the version that this program reads, found 2");
+  EXPECT_EQ(faultOf(replaced(text, "\"degree\": 1", "\"degree\": 4")),
+            "x.json:/degree: expected a whole number in [1, 3], found 4");
+  EXPECT_TRUE(
+      faultOf(replaced(text, "\"degree\": 1", "\"degree\": 2")).starts_with("x.json:/data: expected "));
+  EXPECT_TRUE(faultOf(replaced(text, "\"closed\": true", "\"closed\": 1")).starts_with("x.json:/closed: "));
+  EXPECT_TRUE(faultOf(replaced(text, "\"data\": \"", "\"data\": \"****"))
+                  .starts_with("x.json:/data: expected a text"));
+  EXPECT_TRUE(
+      faultOf(replaced(text, "\"data\": \"", "\"data\": \"AAAA")).starts_with("x.json:/data: expected "));
+}
+
+TEST(SlimFile, RefusesNodesThatAreNone) {
+  SlimData data = someData(2);
+  data.nodes[3].radius = -1;
+  EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/data: node 3: expected a positive radius"));
+  data = someData(2);
+  data.nodes[5].coefficients[4] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/data: node 5: expected finite numbers"));
+  data = someData(2);
+  data.nodes[0].normal *= 2;
+  EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/data: node 0: expected a unit normal"));
+}
+
+}  // namespace
+}  // namespace migiwa
