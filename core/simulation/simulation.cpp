@@ -62,6 +62,8 @@ void Simulation::State::configure() {
     statistics.gammaReason = gamma.reason;
   }
   step.gammaMethod = gamma.method.get();
+  step.wallSlots.clear();
+  step.wallSlot.clear();
   info.spacing = step.spacing;
   info.supportRadius = step.supportRadius;
   limits = healthLimits(scene);

@@ -41,29 +41,50 @@ long floorGamma(float& gamma) {
 void evaluateGamma(StepState& state) {
   const std::size_t n = state.particles.size();
   state.gamma.assign(n, 1);
-  state.wallSlot.assign(n, StepState::kNoWall);
-  state.wallSlots.clear();
-  if (state.boundary.empty()) return;
+  if (state.boundary.empty()) {
+    state.wallSlot.assign(n, StepState::kNoWall);
+    return;
+  }
+  state.wallSlot.resize(n, StepState::kNoWall);
 
-  std::vector<std::vector<WallSlot>> found(chunkCount(n));
+  struct Found {
+    std::vector<WallSlot> known, fresh;  // each in the order of the particles
+  };
+  std::vector<Found> found(chunkCount(n));
+  const float reach = kLinearReach * state.supportRadius;
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    std::vector<WallSlot>& slots = found[chunk];
+    auto& [known, fresh] = found[chunk];
     for (std::size_t i = begin; i < end; ++i) {
-      const float distance = state.boundary.distance(state.current[i].xyz());
+      const auto particle = static_cast<std::uint32_t>(i);
+      const Vec3f p = state.current[i].xyz();
+      // What the step before knew of a particle that has hardly moved since holds for this one too.
+      if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall) {
+        const WallSlot& old = state.wallSlots[slot];
+        if ((p - old.at.xyz()).squaredNorm() <= reach * reach) {
+          known.push_back(old);
+          known.back().particle = particle;
+          continue;
+        }
+      }
+      const float distance = state.boundary.distance(p);
       if (distance >= kWatchReach * state.supportRadius) continue;
-      slots.push_back({static_cast<std::uint32_t>(i), state.current[i], {}});
-      slots.back().sample.distance = distance;
+      fresh.push_back({particle, state.current[i], {}});
+      fresh.back().sample.distance = distance;
     }
-    if (state.gammaMethod != nullptr) evaluate(*state.gammaMethod, slots);
+    if (state.gammaMethod != nullptr) evaluate(*state.gammaMethod, fresh);
   });
-  for (const std::vector<WallSlot>& slots : found) {
-    for (const WallSlot& slot : slots) {
+  state.wallSlots.clear();
+  state.wallSlot.assign(n, StepState::kNoWall);
+  for (const auto& [known, fresh] : found) {
+    const auto take = [&](const WallSlot& slot) {
       state.wallSlot[slot.particle] = static_cast<std::uint32_t>(state.wallSlots.size());
       state.wallSlots.push_back(slot);
       float& gamma = state.gamma[slot.particle];
-      gamma = slot.sample.gamma;
+      gamma = linearGamma(slot, state.current[slot.particle].xyz() - slot.at.xyz(), state.supportRadius);
       state.gammaFloored += floorGamma(gamma);
-    }
+    };
+    std::for_each(known.begin(), known.end(), take);
+    std::for_each(fresh.begin(), fresh.end(), take);
   }
 }
 

@@ -25,6 +25,7 @@ void searchNeighbours(StepState& state) {
   reorder(state.particles.position, state.previous, order, state.pool);
   reorder(state.particles.velocity, state.previous, order, state.pool);
   reorder(state.particles.id, state.spareIds, order, state.pool);
+  if (state.wallSlot.size() == n) reorder(state.wallSlot, state.spareIds, order, state.pool);
   // The search has the room of a buffer that the iterations fill only afterwards.
   resizeTight(state.paired, n + NeighbourLists::kScratchExtra);
   state.neighbours.build(state.grid, std::span(state.current).first(n), state.supportRadius, state.paired,

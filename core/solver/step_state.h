@@ -61,9 +61,10 @@ struct StepState {
   std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
   std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
   std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
-  std::vector<std::uint32_t> spareIds;
+  std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
   CellGrid grid;
   NeighbourLists neighbours;
+  // These last from step to step: gamma is evaluated anew only where a particle has moved.
   std::vector<WallSlot> wallSlots;
   std::vector<std::uint32_t> wallSlot;  ///< of each particle, or kNoWall
   std::vector<float> gamma;
