@@ -1,9 +1,8 @@
 // Covers a solid's surface with balls and fits a polynomial in each, top down: every ball is as large as the
 // tolerance lets it be, and balls are added until every point lies in the core of one ([OBA] section 3).
 //
-// Deviation: [OBA] asks for a summed weight of 1.5 at every point. One ball that is deep enough needs a third
-// of the nodes for the same error, measured on the bunny, and gives rays a part of each ball that leaves no
-// holes.
+// Deviation: [OBA] asks for a summed weight of 1.5 at every point. One ball that is deep enough needs
+// clearly fewer nodes for the same error, and gives rays a part of each ball that leaves no holes.
 #pragma once
 
 #include <functional>

@@ -269,7 +269,9 @@ TEST(GammaAccuracy, SpheresInsideAndOutside) {
   }
 }
 
-TEST(GammaAccuracy, PolynomialsOfDegreeTwoAndThree) {
+class PolynomialAccuracy : public testing::TestWithParam<KernelType> {};
+
+TEST_P(PolynomialAccuracy, OfDegreeTwoAndThree) {
   // z = sum c x^i y^j, in support radii; curvature radii of 2 to 4 h.
   struct Shape {
     const char* name;
@@ -279,8 +281,9 @@ TEST(GammaAccuracy, PolynomialsOfDegreeTwoAndThree) {
                                   {"dome", {{2, 0, -0.25}, {0, 2, -0.125}}},
                                   {"saddle", {{2, 0, 0.25}, {0, 2, -0.25}, {1, 1, 0.1}}},
                                   {"cubic", {{3, 0, 0.15}, {1, 2, -0.1}, {2, 0, 0.1}, {1, 0, 0.2}}}};
-  const KernelType kernel = KernelType::poly6;
+  const KernelType kernel = GetParam();
   const reference::MassTable mass(kernel);
+  const int points = kernel == KernelType::poly6 ? 6 : 3;
   for (const Shape& shape : shapes) {
     const auto height = [&](double x, double y) {
       const double px[] = {1, x, x * x, x * x * x}, py[] = {1, y, y * y, y * y * y};
@@ -298,9 +301,9 @@ TEST(GammaAccuracy, PolynomialsOfDegreeTwoAndThree) {
                {},
                {},
                {}};
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < points; ++k) {
       const double x = 0.5 * std::cos(2.4 * k), y = 0.5 * std::sin(2.4 * k);
-      walls.points.emplace_back(x, y, height(x, y) + 0.02 + 0.16 * k);
+      walls.points.emplace_back(x, y, height(x, y) + 0.02 + 0.96 / points * k);
     }
     const auto truth = [&](const Vec3d& p, double tolerance) {
       return reference::overDirections(
@@ -332,6 +335,10 @@ TEST(GammaAccuracy, PolynomialsOfDegreeTwoAndThree) {
     table(walls, kernel);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, PolynomialAccuracy,
+                         testing::Values(KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
+                                         KernelType::wendlandC2));
 
 TEST(GammaAccuracy, MonteCarloConvergesOnASphere) {
   Case walls{"sphere 3h",
