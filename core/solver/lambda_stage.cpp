@@ -43,6 +43,7 @@ HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const PairScale& 
   const Float4* const others = state.current.data();
   PairVector covered = hn::Zero(d), slopes = hn::Zero(d), x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+  prefetchLists(list.data());
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const PairOffsets pair = centre.to(loadComponents(others, &list[k]), &list[k]);
     const Distances<PairVector> r = distances(d, pair.squared);

@@ -125,6 +125,14 @@ struct PairCentre {
   }
 };
 
+/// Asks early for the lists of the particles to come. From 100,000 particles on they are a stream that no
+/// cache holds, and the processor loses it among the rows of neighbours: a twentieth of a pass.
+HWY_INLINE void prefetchLists(const std::uint32_t* list) {
+  constexpr std::ptrdiff_t kAhead = 160, kCacheLine = 16;
+  __builtin_prefetch(list + kAhead);
+  __builtin_prefetch(list + kAhead + kCacheLine);
+}
+
 /// The sums over the lanes of four vectors, as one float4.
 HWY_INLINE Float4 sumLanes(PairVector a, PairVector b, PairVector c, PairVector e) {
 #if HWY_TARGET == HWY_SCALAR

@@ -26,6 +26,7 @@ HWY_INLINE Vec3f sumPairs(const StepState& state, const PairScale& scale, std::u
   const Float4* const others = state.paired.data();
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+  prefetchLists(list.data());
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const Components neighbours = loadComponents(others, &list[k]);
     const PairOffsets pair = centre.to(neighbours, &list[k]);
