@@ -40,11 +40,12 @@ long floorGamma(float& gamma) {
 
 void evaluateGamma(StepState& state) {
   const std::size_t n = state.particles.size();
-  state.gamma.assign(n, 1);
   if (state.boundary.empty()) {
+    state.gamma.assign(n, 1);
     state.wallSlot.assign(n, StepState::kNoWall);
     return;
   }
+  state.gamma.resize(n);
   state.wallSlot.resize(n, StepState::kNoWall);
 
   struct Found {
@@ -73,19 +74,28 @@ void evaluateGamma(StepState& state) {
     }
     if (state.gammaMethod != nullptr) evaluate(*state.gammaMethod, fresh);
   });
-  state.wallSlots.clear();
-  state.wallSlot.assign(n, StepState::kNoWall);
-  for (const auto& [known, fresh] : found) {
+
+  // One after the other, each chunk from where those before it end.
+  std::vector<std::size_t> first(found.size() + 1, 0);
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk)
+    first[chunk + 1] = first[chunk] + found[chunk].known.size() + found[chunk].fresh.size();
+  state.wallSlots.resize(first.back());
+  std::vector<long> floored(found.size(), 0);
+  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::fill(&state.wallSlot[begin], &state.wallSlot[begin] + (end - begin), StepState::kNoWall);
+    std::fill(&state.gamma[begin], &state.gamma[begin] + (end - begin), 1.0F);
+    std::size_t place = first[chunk];
     const auto take = [&](const WallSlot& slot) {
-      state.wallSlot[slot.particle] = static_cast<std::uint32_t>(state.wallSlots.size());
-      state.wallSlots.push_back(slot);
+      state.wallSlot[slot.particle] = static_cast<std::uint32_t>(place);
+      state.wallSlots[place++] = slot;
       float& gamma = state.gamma[slot.particle];
       gamma = linearGamma(slot, state.current[slot.particle].xyz() - slot.at.xyz(), state.supportRadius);
-      state.gammaFloored += floorGamma(gamma);
+      floored[chunk] += floorGamma(gamma);
     };
-    std::for_each(known.begin(), known.end(), take);
-    std::for_each(fresh.begin(), fresh.end(), take);
-  }
+    std::for_each(found[chunk].known.begin(), found[chunk].known.end(), take);
+    std::for_each(found[chunk].fresh.begin(), found[chunk].fresh.end(), take);
+  });
+  for (const long count : floored) state.gammaFloored += count;
 }
 
 void refreshGamma(StepState& state) {
