@@ -179,7 +179,7 @@ Report readReport(const std::filesystem::path& file) {
   const JsonDocument document = parseJson(readTextFile(file, "a report"));
   if (document.broken)
     throw InputError(file.string() + ":" + document.faults.front().pointer, document.faults.front().message);
-  FaultList faults(file.string(), {});
+  FaultList faults(file.string());
   for (const DocumentFault& fault : document.faults) faults.add(fault.pointer, fault.message);
 
   Report report;

@@ -4,21 +4,16 @@
 
 namespace migiwa {
 
-bool isBelow(std::string_view pointer, std::string_view ancestor) {
-  return pointer.starts_with(ancestor) &&
-         (pointer.size() == ancestor.size() || pointer[ancestor.size()] == '/');
+void FaultList::add(std::string_view pointer, std::string message) {
+  const Origin origin = origins_.of(pointer);
+  // Under "set" the pointer is a key, with its slashes escaped: the plain one says more.
+  if (!origin.file.empty() && origin.pointer != pointer) message += " (" + std::string(pointer) + ")";
+  addAt(origin, std::move(message));
+  pointers_.emplace_back(pointer);
 }
 
-FaultList::FaultList(std::string file, std::vector<std::string> overridden)
-    : file_(std::move(file)), overridden_(std::move(overridden)) {}
-
-void FaultList::add(std::string_view pointer, std::string message) {
-  const bool fromOption =
-      std::any_of(overridden_.begin(), overridden_.end(),
-                  [&](const std::string& ancestor) { return isBelow(pointer, ancestor); });
-  const std::string shown(pointer.empty() ? "/" : pointer);
-  faults_.push_back({fromOption ? "--set " + shown : file_ + ":" + shown, std::move(message)});
-  pointers_.emplace_back(pointer);
+void FaultList::addAt(const Origin& origin, std::string message) {
+  faults_.push_back({origin.text(), std::move(message)});
 }
 
 void FaultList::warn(std::string_view pointer, std::string_view message) {

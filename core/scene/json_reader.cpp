@@ -108,7 +108,14 @@ void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& 
 
 void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc) {
   text(key, value.written, doc);
-  value.path = value.empty() ? std::filesystem::path() : faults_.folder() / value.written;
+  value.path.clear();
+  if (value.empty()) return;
+  const Origins& origins = faults_.origins();
+  const std::filesystem::path folder = origins.folder(childPointer(pointer_, key));
+  value.path = folder / value.written;
+  // An included scene may lie elsewhere: written again, the name has to hold from the scene itself.
+  if (folder != origins.sceneFolder() && std::filesystem::path(value.written).is_relative())
+    value.written = value.path.lexically_proximate(origins.sceneFolder()).generic_string();
 }
 
 bool JsonReader::numbers(std::string_view key, const FieldDoc& doc, std::size_t size, double* values) {

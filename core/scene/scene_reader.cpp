@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/scene/fault_list.h"
+#include "core/scene/include.h"
 #include "core/scene/json_reader.h"
 #include "core/scene/overrides.h"
 #include "core/scene/particle_limit.h"
@@ -41,23 +42,12 @@ void checkWhole(const Scene& scene, FaultList& faults) {
 
 Scene parseScene(std::string_view text, const std::filesystem::path& name,
                  const std::vector<Override>& overrides) {
-  JsonDocument document = parseJson(text);
-  if (document.broken)
-    throw InputError(name.string() + ":" + document.faults.front().pointer, document.faults.front().message);
-
-  std::vector<std::string> overridden;
-  for (const Override& override : overrides) overridden.push_back(override.pointer);
-  FaultList faults(name.string(), std::move(overridden));
-  for (DocumentFault& fault : document.faults) faults.add(fault.pointer, std::move(fault.message));
-
+  FaultList faults(name.string());
+  Json root = resolveIncludes(text, name, faults);
+  applyOverrides(overrides, root, faults);
   Scene scene;
   scene.file = name;
-  if (!document.root.is_object()) {
-    faults.add("", "expected an object, found " + describeJson(document.root));
-    throw InputError(faults.faults());
-  }
-  applyOverrides(overrides, document.root, faults);
-  JsonReader::read(document.root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
+  JsonReader::read(root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
   checkWhole(scene, faults);
   if (!faults.empty()) throw InputError(faults.faults());
   scene.warnings = faults.warnings();
