@@ -5,6 +5,37 @@
 
 namespace migiwa {
 
+Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfaces_(std::move(surfaces)) {
+  for (auto& surface : surfaces_) {
+    if (!surface->motion) continue;
+    moving_.push_back(std::make_shared<MovingSurface>(surface));
+    surface = moving_.back();
+  }
+}
+
+Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) {
+  Boundary boundary;
+  boundary.surfaces_ = std::move(surfaces);
+  return boundary;
+}
+
+void Boundary::moveTo(double before, double now) {
+  for (const auto& surface : moving_) surface->moveTo(before, now);
+}
+
+Vec3f Boundary::nearestVelocity(const Vec3f& p) const {
+  const Surface* nearest = nullptr;
+  float least = std::numeric_limits<float>::infinity();
+  for (const auto& surface : surfaces_) {
+    Vec3f normal;
+    const float d = surface->distance(p, normal);
+    if (d >= least) continue;
+    least = d;
+    nearest = surface.get();
+  }
+  return nearest != nullptr ? nearest->velocity(p) : Vec3f(Vec3f::Zero());
+}
+
 float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
   float nearest = std::numeric_limits<float>::infinity();
   normal.setZero();

@@ -1,17 +1,35 @@
-// All walls of a scene together: the fluid is on the fluid side of every surface.
+// All walls of a scene together: the fluid is on the fluid side of every surface. Those that have a motion
+// are where they are at one time, which moveTo() sets.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "core/boundary/surface.h"
+#include "core/boundary/moving_surface.h"
 
 namespace migiwa {
 
 class Boundary {
  public:
   Boundary() = default;
-  explicit Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfaces_(std::move(surfaces)) {}
+  /// At time 0.
+  explicit Boundary(std::vector<std::shared_ptr<const Surface>> surfaces);
+  /// With every wall where it is described, whether it has a motion or not.
+  static Boundary atRest(std::vector<std::shared_ptr<const Surface>> surfaces);
+  Boundary(const Boundary&) = delete;
+  Boundary& operator=(const Boundary&) = delete;
+  Boundary(Boundary&&) = default;
+  Boundary& operator=(Boundary&&) = default;
+
+  /// Whether there are walls with a motion.
+  bool moves() const { return !moving_.empty(); }
+  std::span<const std::shared_ptr<MovingSurface>> moving() const { return moving_; }
+  /// Puts the walls where they are at `now` (s), having been at their places of `before` a step ago.
+  void moveTo(double before, double now);
+  /// Velocity (m/s) over the last step of the wall nearest to p, at p. Zero where no wall moves, at no cost.
+  Vec3f wallVelocity(const Vec3f& p) const {
+    return moving_.empty() ? Vec3f(Vec3f::Zero()) : nearestVelocity(p);
+  }
 
   bool empty() const { return surfaces_.empty(); }
   const std::vector<std::shared_ptr<const Surface>>& surfaces() const { return surfaces_; }
@@ -25,9 +43,11 @@ class Boundary {
   bool project(Vec3f& p, float margin) const;
 
  private:
+  Vec3f nearestVelocity(const Vec3f& p) const;
   bool projectInTurn(Vec3f& p, float margin, bool& fits) const;
 
   std::vector<std::shared_ptr<const Surface>> surfaces_;
+  std::vector<std::shared_ptr<MovingSurface>> moving_;  ///< those among them that move
 };
 
 }  // namespace migiwa

@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core/base/fields.h"
 #include "core/base/types.h"
 #include "core/boundary/directions.h"
+#include "core/boundary/motion.h"
 
 namespace migiwa {
 
@@ -51,6 +53,15 @@ class Surface {
 
   /// Visits the fields of the scene file's object, then checks and prepares what follows from them.
   virtual void describe(FieldVisitor& visitor) = 0;
+
+  /// How the wall moves; none: it stands still. What moves is a MovingSurface about this one, which a
+  /// Boundary makes for itself, so that surfaces can be shared.
+  std::optional<Motion> motion;
+
+  /// Velocity (m/s) over the last step of the wall's material at p.
+  virtual Vec3f velocity(const Vec3f& /*p*/) const { return Vec3f::Zero(); }
+  /// Where a point is now that has kept its place relative to the wall over the last step.
+  virtual Vec3f carried(const Vec3f& p) const { return p; }
 
   /// Signed distance of p, and the unit normal at the nearest point of the wall.
   virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
