@@ -39,5 +39,6 @@ Command checkCommand();
 Command gammaCommand();
 Command summaryCommand();
 Command slimCommand();
+Command schemaCommand();
 
 }  // namespace migiwa

@@ -4,7 +4,7 @@ namespace migiwa {
 
 std::vector<Command> allCommands() {
   return {viewCommand(),  renderCommand(),  simulateCommand(), checkCommand(),
-          gammaCommand(), summaryCommand(), slimCommand()};
+          gammaCommand(), summaryCommand(), slimCommand(),     schemaCommand()};
 }
 
 }  // namespace migiwa

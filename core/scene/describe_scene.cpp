@@ -73,7 +73,9 @@ void describeBoundary(FieldVisitor& visitor, Scene& scene) {
   visitor.object("gamma", {"", "How gamma, the uncovered part of the kernel, is found."},
                  [&](FieldVisitor& fields) {
                    fields.choice("method", boundary.gammaMethod, gammaMethodNames(),
-                                 {"", "The approximation; auto picks by the shapes of the walls."});
+                                 {"",
+                                  "The approximation; auto picks by the shapes of the walls, mean is the "
+                                  "paper's Eq. 14."});
                    fields.integer("directions", boundary.directions, Range::closed(8, 65536),
                                   {"1", "Directions of the method directions."});
                    fields.integer("samples", boundary.samples, Range::closed(100, 1e8),
@@ -110,10 +112,15 @@ void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
        "Kernel of the density; the pair gradient is Spiky's for poly6 and spiky, its own for the others."});
   visitor.number("support_ratio", solver.supportRatio, Range::closed(1.2, 4),
                  {"1", "Support radius over particle spacing."});
-  visitor.choice("position_step", solver.positionStep, kPositionStepNames,
-                 {"", "How lambda becomes a displacement."});
+  visitor.choice(
+      "position_step", solver.positionStep, kPositionStepNames,
+      {"",
+       "How lambda becomes a displacement: by the full gradient of the constraint, by the pairs and "
+       "the wall alone, or by Eq. 10 of the paper as printed."});
   visitor.choice("acceleration", solver.acceleration, kAccelerationNames,
-                 {"", "How the iterations are made to converge in fewer."});
+                 {"",
+                  "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
+                  "paper's plain iteration."});
   visitor.number("rest_density", solver.restDensity, Range::positive(1e6),
                  {"kg/m^3", "Density of the fluid at rest."});
 }
