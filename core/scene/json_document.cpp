@@ -190,6 +190,8 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
     if (what.find("number overflow") != std::string_view::npos)
       return "expected a number that is not beyond 1e308, found " + tokenAt(offset);
     std::string expected = "expected " + expectedHere(between(what, "while parsing ", " - "));
+    if (text_.find_first_not_of(" \t\r\n") == std::string_view::npos)
+      return expected + ", found an empty text";
     if (atEnd) return expected + ", found the end of the text";
     if (text_.find_first_not_of(" \t\r\n") < offset &&
         what.find("expected end of input") != std::string_view::npos)
@@ -202,7 +204,25 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
       return expected + ", found an invalid text (" + after(lexer, ": ") + ")";
     if (lexer.starts_with("invalid number; "))
       return expected + ", found an invalid number (" + after(lexer, "; ") + ")";
-    return expected + ", found " + tokenAt(offset);
+    return expected + ", found " + tokenAt(offset) + hint(offset);
+  }
+
+  /// What is common elsewhere and not JSON.
+  std::string hint(std::size_t offset) const {
+    const std::string_view rest = text_.substr(offset);
+    const std::size_t before = text_.find_last_not_of(" \t\r\n", offset == 0 ? 0 : offset - 1);
+    const bool afterComma = offset > 0 && before != std::string_view::npos && text_[before] == ',';
+    if (rest.starts_with("\xFF\xFE") || rest.starts_with("\xFE\xFF")) return "; save the file as UTF-8";
+    if (afterComma && (rest.front() == '}' || rest.front() == ']'))
+      return "; no comma follows the last entry";
+    if (rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#'))
+      return "; JSON has no comments, a description can say more";
+    if (rest.starts_with('\'') || rest.starts_with("\xE2\x80\x9C") || rest.starts_with("\xE2\x80\x98"))
+      return "; JSON takes plain double quotes only";
+    if (rest.starts_with("NaN") || rest.starts_with("Infinity")) return "; JSON has finite numbers only";
+    if (rest.starts_with("True") || rest.starts_with("False")) return "; JSON writes true and false";
+    if (rest.starts_with('+') || rest.starts_with('.')) return "; a number begins with a digit or -";
+    return "";
   }
 
   /// The word or sign that begins at `offset`.

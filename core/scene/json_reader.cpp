@@ -109,6 +109,8 @@ void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& 
 void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc) {
   text(key, value.written, doc);
   value.path.clear();
+  const bool given = object_.contains(std::string(key)) && sound({key});
+  if (given && value.empty()) wrong(key, "a file name", "\"\"");
   if (value.empty()) return;
   const Origins& origins = faults_.origins();
   const std::filesystem::path folder = origins.folder(childPointer(pointer_, key));

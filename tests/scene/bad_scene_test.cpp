@@ -42,6 +42,14 @@ bool matches(std::string_view text, std::string_view pattern) {
   return false;
 }
 
+/// With the files' names relative to the corpus.
+std::string withoutFolder(std::string text) {
+  const std::string folder = kBad.string() + "/";
+  for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
+    text.erase(at, folder.size());
+  return text;
+}
+
 class BadScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadScene, IsRefusedWithTheseMessages) {
@@ -56,10 +64,9 @@ TEST_P(BadScene, IsRefusedWithTheseMessages) {
     for (const std::string& line : found) all += line + "\n";
     ASSERT_EQ(found.size(), expected.size()) << all;
     for (std::size_t k = 0; k < found.size(); ++k) {
-      const std::string folder = kBad.string() + "/";
-      ASSERT_TRUE(found[k].starts_with(folder)) << found[k];
-      EXPECT_TRUE(matches(found[k].substr(folder.size()), expected[k]))
-          << "found    " << found[k].substr(folder.size()) << "\nexpected " << expected[k];
+      ASSERT_TRUE(found[k].starts_with(kBad.string() + "/")) << found[k];
+      const std::string shown = withoutFolder(found[k]);
+      EXPECT_TRUE(matches(shown, expected[k])) << "found    " << shown << "\nexpected " << expected[k];
     }
   }
 }
@@ -74,6 +81,10 @@ std::vector<std::string> badScenes() {
 
 INSTANTIATE_TEST_SUITE_P(Corpus, BadScene, testing::ValuesIn(badScenes()),
                          [](const auto& instance) { return instance.param; });
+
+TEST(BadSceneFile, TheCorpusIsLarge) {
+  EXPECT_GE(badScenes().size(), 70U);
+}
 
 TEST(BadSceneFile, Missing) {
   EXPECT_EQ(faultsOf("no/such/scene.json"),
@@ -98,6 +109,10 @@ TEST(BadSceneText, EveryPrefixOfASceneIsRefused) {
   ASSERT_NE(end, std::string::npos);
   for (std::size_t size = 0; size <= end; ++size)
     EXPECT_THROW(parseScene(text.substr(0, size), "part.json"), InputError) << size;
+}
+
+TEST(BadSceneText, AByteOrderMarkDoesNoHarm) {
+  EXPECT_EQ(parseScene("\xEF\xBB\xBF{ \"format\": 1, \"duration\": 2 }", "marked.json").duration, 2);
 }
 
 TEST(BadSceneText, DeepNestingIsRefusedInStride) {

@@ -116,12 +116,47 @@ TEST_F(CommandLine, CheckAcceptsTheShippedScenes) {
                              "still_tank.json: ok (7200 particles at most)\n");
 }
 
+TEST_F(CommandLine, EveryKindOfBadSceneEndsWithItsFaults) {
+  for (const char* name : {"broken_comment", "duplicate_keys", "include_cycle", "include_faults_of_both",
+                           "missing_files", "misplaced_keys", "degenerate_walls", "broken_utf16"}) {
+    const std::string expected = readAll(kBad + name + std::string(".expected"));
+    for (const char* command : {"check", "simulate"}) {
+      const Outcome outcome = run({command, kBad + name + std::string(".json")});
+      EXPECT_EQ(outcome.code, 2) << name;
+      EXPECT_EQ(outcome.out, "") << name;
+      EXPECT_EQ(lines(outcome.err), lines(expected)) << name << "\n" << outcome.err;
+    }
+  }
+  EXPECT_TRUE(folderIsEmpty());
+}
+
+TEST_F(CommandLine, WhatCheckPrintsRunsToTheSameHash) {
+  std::ofstream(folder_ / "variant.json")
+      << R"({ "include": ")" << kScenes << R"(corner_drop.json", "solver": { "time_step": 0.01 },
+              "set": { "/fluid/0/velocity/1": -2, "/boundary/surfaces/0/max/0": 1.5 } })";
+  const Outcome printed = run({"check", "--print", "variant.json", "--set", "/particle_spacing=0.1"});
+  ASSERT_EQ(printed.code, 0) << printed.err;
+  std::ofstream(folder_ / "printed.json") << printed.out;
+  const auto hash = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--until", "0.05", "--report", "report.json", "--quiet"});
+    EXPECT_EQ(run(arguments).code, 0);
+    const std::string report = readAll(folder_ / "report.json");
+    const std::size_t at = report.find("\"state_hash\"");
+    return report.substr(at, report.find('\n', at) - at);
+  };
+  const std::string found = hash({"simulate", "printed.json"});
+  EXPECT_EQ(found, hash({"simulate", "variant.json", "--set", "/particle_spacing=0.1"}));
+  EXPECT_NE(found, hash({"simulate", kScenes + "corner_drop.json", "--set", "/particle_spacing=0.1"}));
+}
+
 TEST_F(CommandLine, CheckListsTheFaultsOfAllFiles) {
   const Outcome outcome = run({"check", kBad + "broken_nan.json", kScenes + "dam_break.json", "missing.json",
                                kBad + "wrong_types.json"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.out, kScenes + "dam_break.json: ok (9216 particles at most)\n");
-  EXPECT_NE(outcome.err.find("broken_nan.json:3:15: expected a value, found 'NaN'\n"), std::string::npos);
+  EXPECT_NE(
+      outcome.err.find("broken_nan.json:3:15: expected a value, found 'NaN'; JSON has finite numbers only\n"),
+      std::string::npos);
   EXPECT_NE(outcome.err.find("missing.json: expected a scene file, found no such file\n"), std::string::npos);
   EXPECT_NE(outcome.err.find("wrong_types.json:/name: expected a text"), std::string::npos);
 }

@@ -23,7 +23,7 @@ failures = []
 
 # What the program says about single values; anything else takes a calculation, which a schema cannot do.
 SINGLE_VALUE = re.compile(
-    r"expected (a number|a whole number|an array|an object|one of|either of|a known key|a text|true or false|1, found"
+    r"expected (a number|a whole number|an array|an object|one of (?!.file)|either of|a known key|a text|true or false|1, found"
     r"|\"|\[\.\.\.\])"
 )
 
@@ -74,7 +74,7 @@ for file in sorted((source / "tests" / "scene" / "bad").glob("*.json")):
         near = any(fault == place or fault.startswith(place + "/") for fault in faults)
         check(near, f"{file.name}: the schema refuses {place or '/'}, the program does not")
     for place, visible in faults.items():
-        if visible:
+        if visible and not place.startswith("/set/"):  # what a pointer leads to is not the schema's to know
             compared += 1
             check({place, parent(place)} & found, f"{file.name}: the program refuses {place or '/'}, the schema does not")
 
