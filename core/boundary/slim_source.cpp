@@ -20,6 +20,9 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
   if (source.kind == SlimSource::Kind::slimFile) {
     SlimData data = readSlimFile(source.file);
     transformNodes(data.nodes, source.transform);
+    transformNodes(data.hierarchy.merged, source.transform);
+    if (std::string note = cutTo(data, source.tolerance, source.nodes); !note.empty())
+      result->notes.push_back(std::move(note));
     result->model = std::make_unique<const SlimModel>(std::move(data.nodes), data.degree, data.closed, pool);
     return result;
   }

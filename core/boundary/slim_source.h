@@ -19,8 +19,9 @@ struct SlimSource {
   std::filesystem::path file;  ///< of slimFile and mesh
   Bowl bowl;
   int degree = 2;        ///< of the fit
-  double tolerance = 0;  ///< of the fit (m); 0 with nodes 0: a thousandth of the diagonal
-  int nodes = 0;         ///< of the fit
+  double tolerance = 0;  ///< of the fit (m); 0 with nodes 0: a thousandth of the diagonal. Cuts a file's
+                         ///< hierarchy; 0 with nodes 0: all of its nodes
+  int nodes = 0;         ///< of the fit; of a file, at most
   Transform transform;
 
   bool operator==(const SlimSource& other) const;

@@ -60,7 +60,11 @@ double PointLevels::build(Level& level, std::size_t count, float cell) const {
   std::sort(level.order.begin(), level.order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
   std::vector<std::uint64_t> sorted(count);
-  for (std::size_t k = 0; k < count; ++k) sorted[k] = keys[level.order[k]];
+  level.positions.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    sorted[k] = keys[level.order[k]];
+    level.positions[k] = points_[level.order[k]].position;
+  }
   level.hash.build(sorted);
   return static_cast<double>(count) / static_cast<double>(level.hash.cells());
 }
@@ -81,22 +85,22 @@ void PointLevels::collect(const Level& level, const Vec3f& centre, float radius,
                           std::vector<std::uint32_t>& out) const {
   out.clear();
   const float squared = radius * radius;
-  const auto take = [&](std::uint32_t index) {
-    if ((points_[index].position - centre).squaredNorm() < squared) out.push_back(index);
+  const auto take = [&](std::size_t k) {
+    if ((level.positions[k] - centre).squaredNorm() < squared) out.push_back(level.order[k]);
   };
   const CellCoordinates low = cellOf(centre - Vec3f::Constant(radius), level.inverseCell);
   const CellCoordinates high = cellOf(centre + Vec3f::Constant(radius), level.inverseCell);
   const double box =
       (double(high.x) - low.x + 1) * (double(high.y) - low.y + 1) * (double(high.z) - low.z + 1);
   if (box > 2 * static_cast<double>(level.order.size())) {
-    for (const std::uint32_t index : level.order) take(index);
+    for (std::size_t k = 0; k < level.order.size(); ++k) take(k);
     return;
   }
   for (std::int32_t z = low.z; z <= high.z; ++z) {
     for (std::int32_t y = low.y; y <= high.y; ++y) {
       for (std::int32_t x = low.x; x <= high.x; ++x) {
         const CellHash::Range range = level.hash.find(cellKey({x, y, z}));
-        for (std::uint32_t k = range.begin; k < range.end; ++k) take(level.order[k]);
+        for (std::uint32_t k = range.begin; k < range.end; ++k) take(k);
       }
     }
   }

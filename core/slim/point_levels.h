@@ -30,6 +30,7 @@ class PointLevels {
     float inverseCell = 1;
     CellHash hash;
     std::vector<std::uint32_t> order;  ///< indices of points, cell by cell
+    std::vector<Vec3f> positions;      ///< theirs, side by side in memory as they are looked at
   };
   void collect(const Level& level, const Vec3f& centre, float radius, std::vector<std::uint32_t>& out) const;
   /// Builds a level of the first `count` points; returns the mean number of points in an occupied cell.

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "migiwa-slim";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kMostNodes = 50'000'000;
 constexpr const char* kLayout[] = {"centre", "radius", "normal", "tangent", "coefficients", "error"};
 static_assert(std::endian::native == std::endian::little, "nodes are written as they lie in memory");
@@ -39,25 +39,26 @@ std::string shown(const Json& value) {
 }
 
 /// The value of a key, which must be there.
-const Json& at(const Json& object, const char* key, const std::string& name, const std::string& expected) {
+const Json& at(const Json& object, const std::string& pointer, const char* key, const std::string& name,
+               const std::string& expected) {
   const auto found = object.find(key);
-  if (found == object.end()) fail(name, std::string("/") + key, "expected " + expected + ", found nothing");
+  if (found == object.end()) fail(name, pointer + "/" + key, "expected " + expected + ", found nothing");
   return *found;
 }
 
-std::size_t wholeNumber(const Json& root, const char* key, const std::string& name, std::size_t least,
-                        std::size_t most) {
+std::size_t wholeNumber(const Json& object, const std::string& pointer, const char* key,
+                        const std::string& name, std::size_t least, std::size_t most) {
   const std::string expected =
       "a whole number in [" + std::to_string(least) + ", " + std::to_string(most) + "]";
-  const Json& value = at(root, key, name, expected);
+  const Json& value = at(object, pointer, key, name, expected);
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most)
-    fail(name, std::string("/") + key, "expected " + expected + ", found " + shown(value));
+    fail(name, pointer + "/" + key, "expected " + expected + ", found " + shown(value));
   return static_cast<std::size_t>(value.get<std::uint64_t>());
 }
 
 SlimStatistics readStatistics(const Json& root, const std::string& name) {
   SlimStatistics statistics;
-  const Json& object = at(root, "statistics", name, "an object");
+  const Json& object = at(root, "", "statistics", name, "an object");
   if (!object.is_object()) fail(name, "/statistics", "expected an object, found " + shown(object));
   for (const char* key : {"largest", "mean"}) {
     const auto found = object.find(key);
@@ -101,27 +102,91 @@ std::string faultOf(const SlimNode& node) {
   return {};
 }
 
-}  // namespace
+Json layout() {
+  Json parts = Json::array();
+  for (const char* part : kLayout) parts.push_back(part);
+  return parts;
+}
 
-std::string slimFileText(const SlimData& data) {
+std::string encodeNodes(const std::vector<SlimNode>& nodes, int degree) {
   std::vector<float> values;
-  values.reserve(data.nodes.size() * floatsPerNode(data.degree));
-  for (const SlimNode& node : data.nodes) {
+  values.reserve(nodes.size() * floatsPerNode(degree));
+  for (const SlimNode& node : nodes) {
     for (const Vec3f* v : {&node.centre, &node.normal, &node.tangent}) {
       values.insert(values.end(), v->data(), v->data() + 3);
       if (v == &node.centre) values.push_back(node.radius);
     }
-    values.insert(values.end(), node.coefficients.begin(),
-                  node.coefficients.begin() + slimTerms(data.degree));
+    values.insert(values.end(), node.coefficients.begin(), node.coefficients.begin() + slimTerms(degree));
     values.push_back(node.error);
   }
+  return base64(std::as_bytes(std::span(values)));
+}
+
+/// The bytes of a key, which must be so many.
+std::vector<std::byte> readBytes(const Json& object, const std::string& pointer, const char* key,
+                                 const std::string& name, std::size_t count, std::size_t each) {
+  const Json& encoded = at(object, pointer, key, name, "a text in base64");
+  const std::string place = pointer + "/" + key;
+  std::vector<std::byte> bytes;
+  if (!encoded.is_string() || !decodeBase64(encoded.get_ref<const std::string&>(), bytes))
+    fail(name, place, "expected a text in base64, found something else");
+  if (bytes.size() != count * each)
+    fail(name, place,
+         "expected " + std::to_string(count * each) + " bytes for " + std::to_string(count) +
+             " nodes, found " + std::to_string(bytes.size()));
+  return bytes;
+}
+
+std::vector<SlimNode> readNodes(const Json& object, const std::string& pointer, int degree,
+                                const std::string& name) {
+  const std::size_t count = wholeNumber(object, pointer, "nodes", name, 1, kMostNodes);
+  const std::size_t width = floatsPerNode(degree);
+  const std::vector<std::byte> bytes = readBytes(object, pointer, "data", name, count, width * sizeof(float));
+  std::vector<float> values(count * width);
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  std::vector<SlimNode> nodes;
+  nodes.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    nodes.push_back(readNode(&values[k * width], degree));
+    if (const std::string fault = faultOf(nodes.back()); !fault.empty())
+      fail(name, pointer + "/data: node " + std::to_string(k), fault);
+  }
+  return nodes;
+}
+
+SlimHierarchy readHierarchy(const Json& object, const SlimData& data, const std::string& name) {
+  SlimHierarchy hierarchy;
+  hierarchy.merged = readNodes(object, "/hierarchy", data.degree, name);
+  const std::size_t count = hierarchy.merged.size(), leaves = data.nodes.size();
+  const std::vector<std::byte> bytes =
+      readBytes(object, "/hierarchy", "children", name, count, sizeof(hierarchy.children[0]));
+  hierarchy.children.resize(count);
+  std::memcpy(hierarchy.children.data(), bytes.data(), bytes.size());
+  std::vector<bool> taken(leaves + count, false);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string place = "/hierarchy/children: node " + std::to_string(k);
+    for (const std::uint32_t child : hierarchy.children[k]) {
+      if (child >= leaves + k)
+        fail(name, place, "expected children before their parent, found number " + std::to_string(child));
+      if (taken[child])
+        fail(name, place, "expected one parent a node, found a second one of " + std::to_string(child));
+      taken[child] = true;
+      const SlimNode& node = child < leaves ? data.nodes[child] : hierarchy.merged[child - leaves];
+      if (hierarchy.merged[k].error < node.error)
+        fail(name, place, "expected an error at least as large as the children's, found a smaller one");
+    }
+  }
+  return hierarchy;
+}
+
+}  // namespace
+
+std::string slimFileText(const SlimData& data) {
   Json statistics = Json::object();
   statistics["source"] = data.statistics.source;
   statistics["largest"] = data.statistics.largest;
   statistics["mean"] = data.statistics.mean;
   statistics["points"] = data.statistics.points;
-  Json layout = Json::array();
-  for (const char* part : kLayout) layout.push_back(part);
   Json root = Json::object();
   root["format"] = kFormat;
   root["version"] = kVersion;
@@ -129,8 +194,15 @@ std::string slimFileText(const SlimData& data) {
   root["closed"] = data.closed;
   root["nodes"] = data.nodes.size();
   root["statistics"] = std::move(statistics);
-  root["layout"] = std::move(layout);
-  root["data"] = base64(std::as_bytes(std::span(values)));
+  root["layout"] = layout();
+  root["data"] = encodeNodes(data.nodes, data.degree);
+  if (!data.hierarchy.merged.empty()) {
+    Json hierarchy = Json::object();
+    hierarchy["nodes"] = data.hierarchy.merged.size();
+    hierarchy["data"] = encodeNodes(data.hierarchy.merged, data.degree);
+    hierarchy["children"] = base64(std::as_bytes(std::span(data.hierarchy.children)));
+    root["hierarchy"] = std::move(hierarchy);
+  }
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -147,39 +219,24 @@ SlimData parseSlimFile(const std::string& text, const std::string& name) {
          std::string("expected \"") + kFormat +
              "\", the mark of a SLIM surface that migiwa slim has written, found " +
              (root.is_object() && root.find("format") != root.end() ? shown(root["format"]) : "nothing"));
-  const auto version = static_cast<int>(wholeNumber(root, "version", name, 0, 1'000'000));
-  if (version != kVersion)
+  const auto version = static_cast<int>(wholeNumber(root, "", "version", name, 0, 1'000'000));
+  if (version < 1 || version > kVersion)
     fail(name, "/version",
-         "expected 1, the version that this program reads, found " + std::to_string(version));
+         "expected 1 or 2, the versions that this program reads, found " + std::to_string(version));
 
   SlimData data;
-  data.degree = static_cast<int>(wholeNumber(root, "degree", name, 1, kLargestSlimDegree));
-  const std::size_t count = wholeNumber(root, "nodes", name, 1, kMostNodes);
-  const Json& closed = at(root, "closed", name, "true or false");
+  data.degree = static_cast<int>(wholeNumber(root, "", "degree", name, 1, kLargestSlimDegree));
+  const Json& closed = at(root, "", "closed", name, "true or false");
   if (!closed.is_boolean()) fail(name, "/closed", "expected true or false, found " + shown(closed));
   data.closed = closed.get<bool>();
   data.statistics = readStatistics(root, name);
-  Json layout = Json::array();
-  for (const char* part : kLayout) layout.push_back(part);
-  if (at(root, "layout", name, shown(layout)) != layout)
-    fail(name, "/layout", "expected " + layout.dump() + ", found " + shown(root["layout"]));
-
-  const Json& encoded = at(root, "data", name, "a text in base64");
-  std::vector<std::byte> bytes;
-  if (!encoded.is_string() || !decodeBase64(encoded.get_ref<const std::string&>(), bytes))
-    fail(name, "/data", "expected a text in base64, found something else");
-  const std::size_t width = floatsPerNode(data.degree);
-  if (bytes.size() != count * width * sizeof(float))
-    fail(name, "/data",
-         "expected " + std::to_string(count * width * sizeof(float)) + " bytes for " + std::to_string(count) +
-             " nodes, found " + std::to_string(bytes.size()));
-  std::vector<float> values(count * width);
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  data.nodes.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    data.nodes.push_back(readNode(&values[k * width], data.degree));
-    if (const std::string fault = faultOf(data.nodes.back()); !fault.empty())
-      fail(name, "/data: node " + std::to_string(k), fault);
+  const Json expected = layout();
+  if (at(root, "", "layout", name, shown(expected)) != expected)
+    fail(name, "/layout", "expected " + expected.dump() + ", found " + shown(root["layout"]));
+  data.nodes = readNodes(root, "", data.degree, name);
+  if (const auto hierarchy = root.find("hierarchy"); hierarchy != root.end()) {
+    if (!hierarchy->is_object()) fail(name, "/hierarchy", "expected an object, found " + shown(*hierarchy));
+    data.hierarchy = readHierarchy(*hierarchy, data, name);
   }
   return data;
 }

@@ -1,8 +1,12 @@
 // Files of fitted SLIM surfaces: a JSON header with the fit's figures, and the nodes as one array of 32-bit
 // floats in base64, little-endian, node by node in the order that "layout" names.
-//   { "format": "migiwa-slim", "version": 1, "degree": 2, "closed": true, "nodes": 4998,
+//   { "format": "migiwa-slim", "version": 2, "degree": 2, "closed": true, "nodes": 4998,
 //     "statistics": { "source": "bunny.obj", "largest": 0.005, "mean": 0.0004, "points": 100000 },
-//     "layout": ["centre", "radius", "normal", "tangent", "coefficients", "error"], "data": "..." }
+//     "layout": ["centre", "radius", "normal", "tangent", "coefficients", "error"], "data": "...",
+//     "hierarchy": { "nodes": 4210, "data": "...", "children": "..." } }
+// The coarser balls of the hierarchy lie in the same layout, children before parents; "children" holds the
+// numbers of two balls for each of them, 32-bit unsigned, counted on from the nodes above. Files without a
+// hierarchy, as version 1 has them, are read too.
 #pragma once
 
 #include <filesystem>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/bounds.h"
 #include "core/slim/local_fit.h"
@@ -13,8 +14,6 @@ namespace {
 
 /// Balls fitted at a time, before any of them is accepted.
 constexpr std::size_t kBatch = 128;
-/// Points that a fit has at least where there are enough, by degree.
-constexpr float kWanted[] = {0, 40, 60, 90};
 /// Halvings of the interval, in the logarithm, between a radius that holds the tolerance and twice of it.
 constexpr int kRefinements = 4;
 
@@ -56,10 +55,31 @@ class Covering {
     return nodes;
   }
 
+  /// About how many balls cover() takes: each covers its core, of which that much is not covered by others.
+  double estimate(float tolerance) {
+    constexpr std::size_t kSamples = 1000, kAtATime = 8;
+    constexpr double kOwnShare = 0.46;
+    tolerance_ = tolerance;
+    fixedRadius_ = 0;
+    const auto points = levels_.points();  // in random order
+    const std::size_t samples = std::min(kSamples, points.size());
+    std::vector<double> radii(samples);
+    pool_.run((samples + kAtATime - 1) / kAtATime, [&](std::size_t chunk) {
+      for (std::size_t k = chunk * kAtATime; k < std::min(samples, (chunk + 1) * kAtATime); ++k)
+        radii[k] = static_cast<double>(largestBall(points[k]).radius);
+    });
+    const double core = static_cast<double>(kSlimCore), spacing = static_cast<double>(levels_.spacing());
+    const double area = spacing * spacing * static_cast<double>(points.size());
+    double balls = 0;
+    for (const double radius : radii)
+      balls += area / (kOwnShare * std::numbers::pi * core * core * radius * radius);
+    return balls / static_cast<double>(samples);
+  }
+
  private:
   LocalFit fitAt(const OrientedPoint& centre, float radius, int degree,
                  std::vector<std::uint32_t>& indices) const {
-    levels_.within(centre.position, radius, kWanted[degree], indices);
+    levels_.within(centre.position, radius, wantedPoints(degree), indices);
     return fitLocally(levels_.points(), indices, centre.position, radius, degree);
   }
 
@@ -107,7 +127,7 @@ class Covering {
   /// end the plane of the centre's own normal. On creases and thin sheets only points that face the same way
   /// count.
   SlimNode fallback(const OrientedPoint& centre, float radius, std::vector<std::uint32_t>& indices) const {
-    levels_.within(centre.position, radius, kWanted[degree_], indices);
+    levels_.within(centre.position, radius, wantedPoints(degree_), indices);
     const auto points = levels_.points();
     std::erase_if(indices,
                   [&](std::uint32_t index) { return points[index].normal.dot(centre.normal) < 0.5F; });
@@ -139,29 +159,31 @@ std::vector<SlimNode> fitSlim(const OrientedPoints& points, const SlimFitOptions
   Bounds bounds;
   for (const OrientedPoint& point : points.points) bounds.include(point.position.cast<double>());
   const double extent = bounds.size().norm();
-  Covering covering(levels, options.degree, static_cast<float>(0.25 * extent), pool);
+  Covering covering(levels, options.degree, static_cast<float>(kLargestSlimRadius * extent), pool);
   if (options.nodes <= 0 || options.radius > 0)
     return covering.cover(static_cast<float>(options.tolerance), static_cast<float>(options.radius),
                           progress);
 
-  // The error of a ball goes with radius^(degree + 1) and the number of balls with radius^-2: secants of the
-  // logarithms.
+  // From an estimate of the number of balls at any tolerance, corrected by what a covering really takes.
   const double wanted = options.nodes;
-  double exponent = -0.5 * (options.degree + 1);
-  double tolerance = 1e-3 * extent, lastLog = 0, lastCount = 0;
+  double low = 1e-8 * extent, high = extent, missing = 1;
   std::vector<SlimNode> best;
-  for (int round = 0; round < 8; ++round) {
-    std::vector<SlimNode> nodes = covering.cover(static_cast<float>(tolerance), 0, {});
-    if (progress) progress((round + 1) / 8.0);
-    const double count = std::log(static_cast<double>(nodes.size())), logTolerance = std::log(tolerance);
-    const double missed = std::abs(count - std::log(wanted));
-    if (best.empty() || missed < std::abs(std::log(static_cast<double>(best.size())) - std::log(wanted)))
-      best = std::move(nodes);
-    if (missed < 0.05) break;
-    if (round > 0 && std::abs(count - lastCount) > 0.01)
-      exponent = std::clamp((logTolerance - lastLog) / (count - lastCount), -4.0, -0.3);
-    lastLog = logTolerance, lastCount = count;
-    tolerance = std::exp(logTolerance + std::clamp(exponent * (std::log(wanted) - count), -5.0, 5.0));
+  constexpr int kMostCoverings = 4;
+  for (int round = 0; round < kMostCoverings; ++round) {
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (covering.estimate(static_cast<float>(middle)) * missing > wanted ? low : high) = middle;
+    }
+    std::vector<SlimNode> nodes = covering.cover(static_cast<float>(high), 0, {});
+    if (progress) progress((round + 1.0) / kMostCoverings);
+    const auto missed = [&](const std::vector<SlimNode>& found) {
+      return std::abs(std::log(static_cast<double>(found.size()) / wanted));
+    };
+    missing *= static_cast<double>(nodes.size()) /
+               std::max(1.0, covering.estimate(static_cast<float>(high)) * missing);
+    low = high / 8, high *= 8;
+    if (best.empty() || missed(nodes) < missed(best)) best = std::move(nodes);
+    if (missed(best) < 0.05) break;
   }
   return best;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/slim/mesh_sampling.h"
 
@@ -48,12 +49,45 @@ SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool
   const OrientedPoints points = fitPoints(shape, options.nodes);
   SlimData data;
   data.nodes = fitSlim(points, options, pool, progress);
+  data.hierarchy = mergeSlim(points, data.nodes, options.degree, pool);
   data.degree = options.degree;
   data.closed = shape.closed;
   const SlimModel model(data.nodes, data.degree, data.closed, pool);
   data.statistics = measureSlim(
       model, shape.isMesh() ? samplePoints(shape.mesh, kMeasuredPoints, 2) : shape.cloud.points, pool);
   return data;
+}
+
+std::string cutTo(SlimData& data, double tolerance, int nodes) {
+  std::string note;
+  const std::size_t held = data.nodes.size(), wanted = static_cast<std::size_t>(std::max(nodes, 0));
+  if (tolerance > 0) {
+    std::vector<float> errors;
+    for (const SlimNode& node : data.nodes) errors.push_back(node.error);
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    if (tolerance < static_cast<double>(*middle)) {
+      std::ostringstream text;
+      text << "most of its " << held << " nodes err by more than the tolerance of " << tolerance << " m, by "
+           << *middle << " m; fit anew with that tolerance";
+      note = text.str();
+    }
+  } else if (wanted > held) {
+    note = "it holds " + std::to_string(held) + " nodes, fewer than the " + std::to_string(nodes) +
+           " asked for; fit anew with more";
+  } else if (wanted > 0) {
+    tolerance = toleranceFor(data.nodes, data.hierarchy, wanted);
+  }
+  if (data.hierarchy.merged.empty()) {
+    if (note.empty() && (tolerance > 0 || (wanted > 0 && wanted < held)))
+      note = "it holds no coarser levels, all of its " + std::to_string(held) + " nodes are taken; fit anew";
+  } else if (tolerance > 0) {
+    data.nodes = cutSlim(data.nodes, data.hierarchy, tolerance);
+    if (wanted > 0 && data.nodes.size() > wanted)
+      note = "its nodes can be merged to no fewer than " + std::to_string(data.nodes.size());
+  }
+  data.hierarchy = {};
+  return note;
 }
 
 void transformShape(ImportedShape& shape, const Transform& transform) {

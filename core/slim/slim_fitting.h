@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/slim/shape_import.h"
 #include "core/slim/slim_fit.h"
+#include "core/slim/slim_hierarchy.h"
 #include "core/slim/slim_model.h"
 #include "core/slim/transform.h"
 
@@ -24,7 +25,8 @@ struct SlimStatistics {
 
 /// What a file of ours holds.
 struct SlimData {
-  std::vector<SlimNode> nodes;
+  std::vector<SlimNode> nodes;  ///< of the fit
+  SlimHierarchy hierarchy;      ///< coarser ones; empty: none
   int degree = 1;
   bool closed = true;
   SlimStatistics statistics;
@@ -33,9 +35,15 @@ struct SlimData {
 /// Tolerance (m) where the user gave neither a tolerance nor a number of nodes: a thousandth of the diagonal.
 double defaultSlimTolerance(const Bounds& bounds);
 
-/// Fits a SLIM surface to the shape. With neither tolerance nor nodes in `options`, by the default tolerance.
+/// Fits a SLIM surface to the shape, and its hierarchy. With neither tolerance nor nodes in `options`, by the
+/// default tolerance.
 SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool,
                   const std::function<void(double)>& progress = {});
+
+/// Replaces the nodes by those of the hierarchy that the tolerance (m) allows or, if that is 0, by at most
+/// `nodes`; with both 0 they stay. Drops the hierarchy. Returns what is worth saying: nothing, or that the
+/// data is not as fine as that.
+std::string cutTo(SlimData& data, double tolerance, int nodes);
 
 /// Distances from `points` to the surface.
 SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoint>& points,

@@ -19,6 +19,8 @@ inline constexpr int kLargestSlimDegree = 3;
 /// Part of a ball's radius, its core: every point of the surface lies in the core of some ball, where that
 /// has a weight of at least 0.08.
 inline constexpr float kSlimCore = 0.55F;
+/// Largest radius of a fitted ball, in diagonals of the shape.
+inline constexpr double kLargestSlimRadius = 0.25;
 constexpr int slimTerms(int degree) {
   return (degree + 1) * (degree + 2) / 2;
 }

@@ -13,9 +13,11 @@ SlimData someData(int degree) {
   ThreadPool pool(1);
   SlimFitOptions options;
   options.degree = degree;
-  options.tolerance = 0.02;
+  options.tolerance = degree == 1 ? 0.02 : 0.002;
   SlimData data;
-  data.nodes = fitSlim(testing::ExactSphere{}.points(2000), options, pool);
+  const OrientedPoints points = testing::ExactSphere{}.points(2000);
+  data.nodes = fitSlim(points, options, pool);
+  data.hierarchy = mergeSlim(points, data.nodes, degree, pool);
   data.degree = degree;
   data.statistics = {"ball.ply", 0.02, 0.003, 2000};
   return data;
@@ -36,6 +38,18 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+void expectSame(const std::vector<SlimNode>& read, const std::vector<SlimNode>& written) {
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t k = 0; k < read.size(); ++k) {
+    EXPECT_EQ(read[k].centre, written[k].centre);
+    EXPECT_EQ(read[k].radius, written[k].radius);
+    EXPECT_EQ(read[k].normal, written[k].normal);
+    EXPECT_EQ(read[k].tangent, written[k].tangent);
+    EXPECT_EQ(read[k].coefficients, written[k].coefficients);
+    EXPECT_EQ(read[k].error, written[k].error);
+  }
+}
+
 TEST(SlimFile, ReadsWhatItWrote) {
   for (int degree = 1; degree <= 3; ++degree) {
     const SlimData written = someData(degree);
@@ -46,16 +60,20 @@ TEST(SlimFile, ReadsWhatItWrote) {
     EXPECT_EQ(read.statistics.largest, 0.02);
     EXPECT_EQ(read.statistics.mean, 0.003);
     EXPECT_EQ(read.statistics.points, 2000U);
-    ASSERT_EQ(read.nodes.size(), written.nodes.size());
-    for (std::size_t k = 0; k < read.nodes.size(); ++k) {
-      EXPECT_EQ(read.nodes[k].centre, written.nodes[k].centre);
-      EXPECT_EQ(read.nodes[k].radius, written.nodes[k].radius);
-      EXPECT_EQ(read.nodes[k].normal, written.nodes[k].normal);
-      EXPECT_EQ(read.nodes[k].tangent, written.nodes[k].tangent);
-      EXPECT_EQ(read.nodes[k].coefficients, written.nodes[k].coefficients);
-      EXPECT_EQ(read.nodes[k].error, written.nodes[k].error);
-    }
+    expectSame(read.nodes, written.nodes);
+    ASSERT_FALSE(written.hierarchy.merged.empty());
+    expectSame(read.hierarchy.merged, written.hierarchy.merged);
+    EXPECT_EQ(read.hierarchy.children, written.hierarchy.children);
   }
+}
+
+TEST(SlimFile, ReadsFilesOfVersionOneWithoutAHierarchy) {
+  SlimData written = someData(2);
+  written.hierarchy = {};
+  const SlimData read =
+      parseSlimFile(replaced(slimFileText(written), "\"version\": 2", "\"version\": 1"), "x.json");
+  expectSame(read.nodes, written.nodes);
+  EXPECT_TRUE(read.hierarchy.merged.empty());
 }
 
 TEST(SlimFile, RefusesEveryPrefix) {
@@ -69,8 +87,8 @@ TEST(SlimFile, RefusesForeignAndDamagedOnesWithThePlace) {
   const std::string text = slimFileText(someData(1));
   EXPECT_TRUE(faultOf("{\"format\": 1}").starts_with("x.json:/format: expected \"migiwa-slim\""));
   EXPECT_TRUE(faultOf("[]").starts_with("x.json:/format: "));
-  EXPECT_EQ(faultOf(replaced(text, "\"version\": 1", "\"version\": 2")),
-            "x.json:/version: expected 1, the version that this program reads, found 2");
+  EXPECT_EQ(faultOf(replaced(text, "\"version\": 2", "\"version\": 3")),
+            "x.json:/version: expected 1 or 2, the versions that this program reads, found 3");
   EXPECT_EQ(faultOf(replaced(text, "\"degree\": 1", "\"degree\": 4")),
             "x.json:/degree: expected a whole number in [1, 3], found 4");
   EXPECT_TRUE(
@@ -92,6 +110,27 @@ TEST(SlimFile, RefusesNodesThatAreNone) {
   data = someData(2);
   data.nodes[0].normal *= 2;
   EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/data: node 0: expected a unit normal"));
+}
+
+TEST(SlimFile, RefusesHierarchiesThatAreNone) {
+  SlimData data = someData(1);
+  data.hierarchy.children[0][1] = static_cast<std::uint32_t>(data.nodes.size());
+  EXPECT_TRUE(faultOf(slimFileText(data))
+                  .starts_with("x.json:/hierarchy/children: node 0: expected children before their parent"));
+  data = someData(1);
+  data.hierarchy.children[1][0] = data.hierarchy.children[0][0];
+  EXPECT_TRUE(faultOf(slimFileText(data))
+                  .starts_with("x.json:/hierarchy/children: node 1: expected one parent a node"));
+  data = someData(1);
+  data.hierarchy.merged.back().error = 0;
+  EXPECT_NE(faultOf(slimFileText(data)).find("expected an error at least as large as the children's"),
+            std::string::npos);
+  data = someData(1);
+  data.hierarchy.children.pop_back();
+  EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/hierarchy/children: expected "));
+  data = someData(1);
+  data.hierarchy.merged[2].centre.x() = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/hierarchy/data: node 2: expected finite"));
 }
 
 }  // namespace
