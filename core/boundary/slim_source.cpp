@@ -2,7 +2,10 @@
 
 #include <deque>
 #include <mutex>
+#include <optional>
 
+#include "core/boundary/gamma/grid_cache.h"
+#include "core/boundary/slim_cache.h"
 #include "core/slim/slim_file.h"
 
 namespace migiwa {
@@ -13,6 +16,42 @@ namespace {
 constexpr std::size_t kBowlPoints = 200000;
 /// Fits that are kept.
 constexpr std::size_t kMostKept = 4;
+
+/// Fits to what the source names, unless an earlier run has left the same fit behind.
+SlimFit fitOf(const SlimSource& source, ThreadPool& pool) {
+  const std::filesystem::path folder = cacheFolder();
+  const std::string key = folder.empty() ? std::string() : slimFitKey(source);
+  const std::filesystem::path file = key.empty() ? std::filesystem::path() : slimFitFile(folder, key);
+  if (!key.empty())
+    if (std::optional<SlimFit> known = readSlimFit(file, key)) return *std::move(known);
+  SlimFit fit;
+  OrientedPoints points;
+  if (source.kind == SlimSource::Kind::bowl) {
+    points = bowlPoints(source.bowl, kBowlPoints);
+    for (OrientedPoint& point : points.points)
+      point = {source.transform.point(point.position), source.transform.direction(point.normal)};
+  } else {
+    ImportedShape shape = importShape(source.file);
+    transformShape(shape, source.transform);
+    points = fitPoints(shape, source.nodes);
+    fit.notes = std::move(shape.notes);
+  }
+  SlimFitOptions options;
+  options.degree = source.degree;
+  options.tolerance = source.tolerance;
+  options.nodes = source.nodes;
+  if (source.tolerance <= 0 && source.nodes <= 0) {
+    Bounds bounds;
+    for (const OrientedPoint& point : points.points) bounds.include(point.position.cast<double>());
+    options.tolerance = defaultSlimTolerance(bounds);
+  }
+  fit.data.nodes = fitSlim(points, options, pool);
+  fit.data.degree = source.degree;
+  fit.data.closed = points.closed;
+  // A fit that cannot be kept costs the next start some seconds, no more.
+  if (!key.empty()) writeSlimFit(file, key, fit);
+  return fit;
+}
 
 std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
   ThreadPool pool(0);
@@ -26,28 +65,10 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
     result->model = std::make_unique<const SlimModel>(std::move(data.nodes), data.degree, data.closed, pool);
     return result;
   }
-  OrientedPoints points;
-  if (source.kind == SlimSource::Kind::bowl) {
-    points = bowlPoints(source.bowl, kBowlPoints);
-    for (OrientedPoint& point : points.points)
-      point = {source.transform.point(point.position), source.transform.direction(point.normal)};
-  } else {
-    ImportedShape shape = importShape(source.file);
-    transformShape(shape, source.transform);
-    points = fitPoints(shape, source.nodes);
-    result->notes = std::move(shape.notes);
-  }
-  SlimFitOptions options;
-  options.degree = source.degree;
-  options.tolerance = source.tolerance;
-  options.nodes = source.nodes;
-  if (source.tolerance <= 0 && source.nodes <= 0) {
-    Bounds bounds;
-    for (const OrientedPoint& point : points.points) bounds.include(point.position.cast<double>());
-    options.tolerance = defaultSlimTolerance(bounds);
-  }
+  SlimFit fit = fitOf(source, pool);
+  result->notes = std::move(fit.notes);
   result->model =
-      std::make_unique<const SlimModel>(fitSlim(points, options, pool), source.degree, points.closed, pool);
+      std::make_unique<const SlimModel>(std::move(fit.data.nodes), fit.data.degree, fit.data.closed, pool);
   return result;
 }
 

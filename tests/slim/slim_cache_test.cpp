@@ -1,0 +1,138 @@
+// Fits kept on disk: found again when nothing has changed, made anew when anything has, and never trusted
+// when they are not whole.
+#include "core/boundary/slim_cache.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "core/boundary/gamma/grid_cache.h"
+
+namespace migiwa {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A cube of 12 triangles.
+constexpr const char* kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+
+/// A cache and a mesh of its own for every test.
+class SlimCache : public testing::Test {
+ protected:
+  SlimCache() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("migiwa_" + std::string(test->name()) + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
+    setenv("MIGIWA_CACHE", (folder_ / "cache").c_str(), 1);
+    source_.file = folder_ / "cube.obj";
+    write(source_.file, kCube);
+    source_.degree = 1;
+    source_.nodes = 100;
+  }
+  ~SlimCache() override {
+    fs::remove_all(folder_);
+    before_.empty() ? unsetenv("MIGIWA_CACHE") : setenv("MIGIWA_CACHE", before_.c_str(), 1);
+  }
+
+  static void write(const fs::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+  }
+  static std::string textOf(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  static fs::path fileOf(const SlimSource& source) { return slimFitFile(cacheFolder(), slimFitKey(source)); }
+
+  fs::path folder_, before_;
+  SlimSource source_;
+};
+
+TEST_F(SlimCache, GivesBackWhatWasFitted) {
+  const std::shared_ptr<const SlimWallData> made = prepareSlim(source_);
+  const std::string key = slimFitKey(source_);
+  const std::optional<SlimFit> kept = readSlimFit(fileOf(source_), key);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->data.degree, 1);
+  EXPECT_TRUE(kept->data.closed);
+  ThreadPool pool(1);
+  const SlimModel model(kept->data.nodes, 1, true, pool);
+  ASSERT_EQ(model.nodes().size(), made->model->nodes().size());
+  for (std::size_t k = 0; k < model.nodes().size(); ++k) {
+    EXPECT_EQ(model.nodes()[k].centre, made->model->nodes()[k].centre);
+    EXPECT_EQ(model.nodes()[k].coefficients, made->model->nodes()[k].coefficients);
+  }
+}
+
+TEST_F(SlimCache, IsReadAtTheNextStart) {
+  // A fit that no mesh gives: what comes back was read.
+  SlimFit planted;
+  planted.data.degree = 1;
+  planted.data.nodes.resize(1);
+  planted.data.nodes[0].radius = 0.5F;
+  planted.notes = {"a note", "another note"};
+  ASSERT_TRUE(writeSlimFit(fileOf(source_), slimFitKey(source_), planted));
+  const std::shared_ptr<const SlimWallData> read = prepareSlim(source_);
+  EXPECT_EQ(read->model->nodes().size(), 1U);
+  EXPECT_EQ(read->notes, planted.notes);
+}
+
+TEST_F(SlimCache, TheKeyTellsAllThatMatters) {
+  const std::string key = slimFitKey(source_);
+  EXPECT_EQ(slimFitKey(source_), key);
+  std::vector<SlimSource> others(6, source_);
+  others[0].degree = 2;
+  others[1].nodes = 101;
+  others[2].tolerance = 0.01;
+  others[3].transform.translate.y() = 1e-9;
+  others[4].transform.scale = 2;
+  others[5].kind = SlimSource::Kind::bowl;
+  for (const SlimSource& other : others) EXPECT_NE(slimFitKey(other), key);
+  write(source_.file, std::string(kCube) + "# one more line\n");
+  EXPECT_NE(slimFitKey(source_), key);
+  // The same mesh in another place is the same.
+  SlimSource moved = source_;
+  moved.file = folder_ / "elsewhere.obj";
+  write(moved.file, kCube);
+  EXPECT_EQ(slimFitKey(moved), key);
+  moved.file = folder_ / "none.obj";
+  EXPECT_EQ(slimFitKey(moved), "");
+}
+
+TEST_F(SlimCache, FilesThatAreNotWholeOrNotAskedForAreNoFiles) {
+  prepareSlim(source_);
+  const std::string key = slimFitKey(source_), whole = textOf(fileOf(source_));
+  ASSERT_GT(whole.size(), 1000U);
+  const fs::path file = folder_ / "damaged.fit";
+  for (std::size_t size = 0; size < whole.size(); size += 1 + size / 8) {
+    write(file, whole.substr(0, size));
+    EXPECT_FALSE(readSlimFit(file, key)) << size;
+  }
+  for (std::size_t at = 0; at < whole.size(); at += 97) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    write(file, changed);
+    EXPECT_FALSE(readSlimFit(file, key)) << at;
+  }
+  write(file, whole + " ");
+  EXPECT_FALSE(readSlimFit(file, key));
+  write(file, whole);
+  EXPECT_FALSE(readSlimFit(file, key + " "));
+  EXPECT_TRUE(readSlimFit(file, key));
+}
+
+TEST_F(SlimCache, DoesWithoutAFolderThatCannotBeWritten) {
+  setenv("MIGIWA_CACHE", "/dev/null/none", 1);
+  SlimSource source = source_;
+  source.nodes = 120;
+  EXPECT_GT(prepareSlim(source)->model->nodes().size(), 50U);
+}
+
+}  // namespace
+}  // namespace migiwa
