@@ -5,6 +5,7 @@
 
 #include "core/base/bounds.h"
 #include "core/base/error.h"
+#include "core/slim/normal_estimation.h"
 #include "core/slim/point_levels.h"
 
 namespace migiwa {
@@ -41,6 +42,20 @@ std::size_t turnAgainstNeighbours(std::vector<OrientedPoint>& points) {
   return turned;
 }
 
+/// Negative where most normals face the middle of the points.
+double outwardFlux(const std::vector<OrientedPoint>& points) {
+  Bounds bounds;
+  for (const OrientedPoint& point : points) bounds.include(point.position.cast<double>());
+  double flux = 0;
+  for (const OrientedPoint& point : points)
+    flux += point.normal.cast<double>().dot(point.position.cast<double>() - bounds.center());
+  return flux;
+}
+
+void turnAll(std::vector<OrientedPoint>& points) {
+  for (OrientedPoint& point : points) point.normal = -point.normal;
+}
+
 }  // namespace
 
 bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
@@ -57,27 +72,35 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
                     " points at the same place as another one were left out");
   if (points.size() < kFewestPoints)
     throw InputError(place, "expected a mesh, or at least " + std::to_string(kFewestPoints) +
-                                " points with normals, found " + std::to_string(points.size()) + " points");
+                                " points, found " + std::to_string(points.size()) + " points");
+  if (points[0].normal.isZero()) {
+    estimateNormals(points, place);
+    notes.emplace_back("normals were estimated from neighbouring points, and made to face outwards");
+    return true;
+  }
   if (const std::size_t turned = turnAgainstNeighbours(points); turned > 0)
     notes.push_back(std::to_string(turned) + " normals were turned to agree with their neighbours");
-
-  Bounds bounds;
-  Vec3d mean = Vec3d::Zero();
-  for (const OrientedPoint& point : points) {
-    bounds.include(point.position.cast<double>());
-    mean += point.normal.cast<double>() / static_cast<double>(points.size());
+  const bool inwards = outwardFlux(points) < 0;
+  // Whole parts that face the other way than the rest.
+  std::vector<OrientedPoint> agreed = points;
+  if (inwards) turnAll(agreed);
+  if (const std::size_t turned = orientNormals(agreed); turned > 0) {
+    points = std::move(agreed);
+    notes.push_back(std::to_string(turned) + " normals were turned so that all of them face outwards");
+    return true;
   }
+
+  Vec3d mean = Vec3d::Zero();
+  for (const OrientedPoint& point : points)
+    mean += point.normal.cast<double>() / static_cast<double>(points.size());
   const bool closed = mean.norm() < kMostOpen;
   if (!closed) {
     notes.emplace_back(
         "the points do not seem to cover a closed surface: inside and outside are known near it only");
     return false;
   }
-  double flux = 0;
-  for (const OrientedPoint& point : points)
-    flux += point.normal.cast<double>().dot(point.position.cast<double>() - bounds.center());
-  if (flux < 0) {
-    for (OrientedPoint& point : points) point.normal = -point.normal;
+  if (inwards) {
+    turnAll(points);
     notes.emplace_back("all normals were turned: they pointed inwards");
   }
   return true;

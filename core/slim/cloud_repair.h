@@ -8,10 +8,10 @@
 
 namespace migiwa {
 
-/// Drops points that are there twice, turns normals against those of most of their neighbours, and all of
-/// them if they point inwards. Adds a sentence to `notes` for each kind of repair. Returns whether the points
-/// seem to cover a closed surface, on which normals cancel. Throws InputError at `place` for fewer than 50
-/// points.
+/// Drops points that are there twice, estimates normals where all are zero, turns those against most of their
+/// neighbours, and all of them if they point inwards. Adds a sentence to `notes` for each kind of repair.
+/// Returns whether the points seem to cover a closed surface, on which normals cancel. Throws InputError at
+/// `place` for fewer than 50 points.
 bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
                  std::vector<std::string>& notes);
 

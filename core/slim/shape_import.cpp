@@ -1,6 +1,10 @@
 #include "core/slim/shape_import.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
@@ -11,6 +15,7 @@
 #include "core/slim/cloud_repair.h"
 #include "core/slim/mesh_repair.h"
 #include "core/slim/mesh_sampling.h"
+#include "core/slim/ply_check.h"
 
 namespace migiwa {
 
@@ -23,8 +28,8 @@ constexpr float kLargestCoordinateRead = 1e7F;
 
 struct Raw {
   TriangleMesh mesh;
-  std::vector<OrientedPoint> points;  ///< of parts without faces
-  std::size_t pointsWithoutNormal = 0;
+  std::vector<OrientedPoint> points;    ///< of parts without faces
+  std::size_t pointsWithoutNormal = 0;  ///< whose normal is zero
 };
 
 void requireFile(const fs::path& file) {
@@ -40,6 +45,18 @@ void requireFile(const fs::path& file) {
   if (file.string().find("/glmark2/") != std::string::npos)
     remedy = "; it comes with Debian's package glmark2-data (sudo apt-get install glmark2-data)";
   throw InputError(file.string(), expected + "no such file" + remedy);
+}
+
+void requireWholePly(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending != ".ply") return;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (std::string fault = plyFault(content.view()); !fault.empty())
+    throw InputError(file.string(), std::move(fault));
 }
 
 void requireFinite(const fs::path& file, const Vec3f& p, const char* kind, std::size_t number) {
@@ -59,14 +76,12 @@ void addMesh(const fs::path& file, const aiMesh& part, const aiMatrix4x4& transf
   if (part.mNumFaces == 0) {
     for (unsigned k = 0; k < part.mNumVertices; ++k) {
       const Vec3f p = vectorOf(transform * part.mVertices[k]);
-      requireFinite(file, p, "point", raw.points.size() + raw.pointsWithoutNormal);
+      requireFinite(file, p, "point", raw.points.size());
       const Vec3f n = part.mNormals != nullptr ? vectorOf(linear * part.mNormals[k]) : Vec3f(Vec3f::Zero());
       const float length = n.norm();
-      if (length > 1e-6F && std::isfinite(length)) {
-        raw.points.push_back({p, n / length});
-      } else {
-        ++raw.pointsWithoutNormal;
-      }
+      const bool known = length > 1e-6F && std::isfinite(length);
+      raw.points.push_back({p, known ? Vec3f(n / length) : Vec3f(Vec3f::Zero())});
+      if (!known) ++raw.pointsWithoutNormal;
     }
     return;
   }
@@ -103,12 +118,13 @@ Bounds ImportedShape::bounds() const {
 
 ImportedShape importShape(const fs::path& file) {
   requireFile(file);
+  requireWholePly(file);
   Assimp::Importer importer;
   // Everything but positions, faces and the normals of points is left out.
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(file.string(),
-                     "expected a mesh (OBJ, PLY, STL, ...) or a point cloud with normals, found a file that "
+                     "expected a mesh (OBJ, PLY, STL, ...) or a point cloud, found a file that "
                      "cannot be read as one: " +
                          std::string(importer.GetErrorString()));
   Raw raw;
@@ -120,10 +136,12 @@ ImportedShape importShape(const fs::path& file) {
     shape.closed = repairMesh(shape.mesh, file.string(), shape.notes);
     return shape;
   }
-  if (raw.pointsWithoutNormal > 0)
-    throw InputError(file.string(), "expected a normal (nx, ny, nz) for every point, found " +
-                                        std::to_string(raw.pointsWithoutNormal) + " points without one");
   shape.cloud.points = std::move(raw.points);
+  if (raw.pointsWithoutNormal > 0 && raw.pointsWithoutNormal < shape.cloud.points.size()) {
+    std::erase_if(shape.cloud.points, [](const OrientedPoint& point) { return point.normal.isZero(); });
+    shape.notes.push_back(std::to_string(raw.pointsWithoutNormal) +
+                          " points without a normal were left out, others have one");
+  }
   shape.closed = repairCloud(shape.cloud.points, file.string(), shape.notes);
   shape.cloud.closed = shape.closed;
   return shape;

@@ -10,7 +10,8 @@
 
 namespace migiwa {
 
-/// What a file holds, checked and repaired where that is safe: a mesh, or points with normals.
+/// What a file holds, checked and repaired where that is safe: a mesh, or points with normals, which
+/// are estimated where the file has none.
 struct ImportedShape {
   TriangleMesh mesh;               ///< no triangles: the file holds points
   OrientedPoints cloud;            ///< no points: the file holds a mesh

@@ -128,7 +128,9 @@ TEST_F(ShapeImport, RefusesWhatIsNoSurface) {
   EXPECT_EQ(faultOf(folder_ / "none.obj"), "expected a mesh or a point cloud, found no such file");
   EXPECT_EQ(faultOf(folder_), "expected a mesh or a point cloud, found a folder");
   EXPECT_EQ(faultOf(write("empty.obj", "")), "expected a mesh or a point cloud, found an empty file");
-  EXPECT_TRUE(faultOf(write("text.ply", "Dear Sir,")).starts_with("expected a mesh (OBJ, PLY, STL, ...)"));
+  EXPECT_EQ(faultOf(write("text.ply", "Dear Sir,")),
+            "expected a PLY file, found one that does not begin with \"ply\"");
+  EXPECT_TRUE(faultOf(write("text.obx", "Dear Sir,")).starts_with("expected a mesh (OBJ, PLY, STL, ...)"));
   EXPECT_EQ(faultOf(write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
             "expected at least 4 triangles, found 1; a box or a plane is a shape of its own");
   EXPECT_TRUE(faultOf(write("nan.obj", "v nan 0 0\n" + kCubeVertices + kCubeFaces))
@@ -197,12 +199,82 @@ TEST_F(ShapeImport, ReadsACloudAndRepairsIt) {
   EXPECT_EQ(shape.notes[1], "50 normals were turned to agree with their neighbours");
 }
 
-TEST_F(ShapeImport, RefusesACloudWithoutNormalsOrWithTooFewPoints) {
-  const std::vector<OrientedPoint> points = testing::ExactSphere{}.points(100).points;
-  EXPECT_EQ(faultOf(write("bare.ply", cloudText(points, false))),
-            "expected a normal (nx, ny, nz) for every point, found 100 points without one");
+TEST_F(ShapeImport, EstimatesNormalsWhereThereAreNone) {
+  const std::vector<OrientedPoint> points = testing::ExactSphere{}.points(2000).points;
+  for (const fs::path& file : {write("bare.ply", cloudText(points, false)), write("bare.obj", [&] {
+                                 std::string text;
+                                 for (const OrientedPoint& p : points)
+                                   text += "v " + std::to_string(p.position.x()) + " " +
+                                           std::to_string(p.position.y()) + " " +
+                                           std::to_string(p.position.z()) + "\n";
+                                 return text;
+                               }())}) {
+    const ImportedShape shape = importShape(file);
+    EXPECT_TRUE(shape.closed);
+    ASSERT_EQ(shape.notes.size(), 1U);
+    EXPECT_EQ(shape.notes[0], "normals were estimated from neighbouring points, and made to face outwards");
+    ASSERT_EQ(shape.cloud.points.size(), 2000U);
+    for (const OrientedPoint& point : shape.cloud.points) ASSERT_GT(point.normal.dot(point.position), 0.99F);
+  }
+}
+
+TEST_F(ShapeImport, TurnsAHalfThatFacesTheOtherWay) {
+  std::vector<OrientedPoint> points = testing::ExactSphere{}.points(2000).points;
+  for (OrientedPoint& point : points)
+    if (point.position.y() > 0.2F) point.normal = -point.normal;
+  const ImportedShape shape = importShape(write("half.ply", cloudText(points, true)));
+  EXPECT_TRUE(shape.closed);
+  for (const OrientedPoint& point : shape.cloud.points) ASSERT_GT(point.normal.dot(point.position), 0.9F);
+  ASSERT_FALSE(shape.notes.empty());
+  EXPECT_TRUE(shape.notes.back().ends_with("normals were turned so that all of them face outwards"))
+      << shape.notes.back();
+}
+
+TEST_F(ShapeImport, LeavesOutPointsWithoutANormalAmongOthers) {
+  std::vector<OrientedPoint> points = testing::ExactSphere{}.points(2000).points;
+  for (std::size_t k = 0; k < 30; ++k) points[7 * k].normal.setZero();
+  const ImportedShape shape = importShape(write("some.ply", cloudText(points, true)));
+  EXPECT_EQ(shape.cloud.points.size(), 1970U);
+  ASSERT_EQ(shape.notes.size(), 1U);
+  EXPECT_EQ(shape.notes[0], "30 points without a normal were left out, others have one");
+}
+
+TEST_F(ShapeImport, RefusesCloudsThatAreNone) {
+  std::vector<OrientedPoint> points = testing::ExactSphere{}.points(100).points;
   EXPECT_EQ(faultOf(write("few.ply", cloudText({points.begin(), points.begin() + 9}, true))),
-            "expected a mesh, or at least 50 points with normals, found 9 points");
+            "expected a mesh, or at least 50 points, found 9 points");
+  std::vector<OrientedPoint> same(200, points[0]);
+  EXPECT_EQ(faultOf(write("same.ply", cloudText(same, true))),
+            "expected a mesh, or at least 50 points, found 1 points");
+  points[3].position.x() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(faultOf(write("nan.ply", cloudText(points, true)))
+                  .starts_with("expected coordinates that are finite and at most 1e7, found (nan"));
+  // Half a sphere has no inside, so nobody knows where bare points should face.
+  std::vector<OrientedPoint> half = testing::ExactSphere{}.points(2000).points;
+  std::erase_if(half, [](const OrientedPoint& p) { return p.position.y() > 0; });
+  EXPECT_NE(faultOf(write("half.ply", cloudText(half, false)))
+                .find("inside and outside cannot be told apart: they do not cover a closed surface"),
+            std::string::npos);
+}
+
+TEST_F(ShapeImport, RefusesFilesThatEndEarly) {
+  const std::string whole = cloudText(testing::ExactSphere{}.points(200).points, true);
+  for (const std::size_t size : {std::size_t{3}, std::size_t{40}, whole.size() / 2})
+    EXPECT_NE(faultOf(write("cut" + std::to_string(size) + ".ply", whole.substr(0, size))), "accepted")
+        << size;
+  EXPECT_EQ(faultOf(write("cut.ply", whole.substr(0, whole.rfind('\n', whole.size() - 2)))),
+            "expected 200 lines after the header, as it says, found 199: the file ends early");
+  EXPECT_EQ(faultOf(write("binary.ply",
+                          "ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float "
+                          "x\nproperty float y\nproperty double z\nelement face 10\nproperty list "
+                          "uchar int vertex_indices\nend_header\n" +
+                              std::string(1000, '\1'))),
+            "expected at least 1610 bytes after the header, as it says, found 1000: the file ends early");
+  std::string stl(80, ' ');
+  stl += std::string("\x10\x27\0\0", 4) + std::string(120, '\0');  // 10,000 triangles, and two follow
+  EXPECT_NE(faultOf(write("cut.stl", stl)), "accepted");
+  EXPECT_NE(faultOf(write("only_vertices.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "accepted");
+  EXPECT_NE(faultOf(write("wrong_corner.obj", kCubeVertices + "f 1 2 99\n")), "accepted");
 }
 
 TEST(Bunny, IsToldInsideFromOutside) {

@@ -6,6 +6,7 @@
 
 #include "core/slim/bowl.h"
 #include "core/slim/slim_model.h"
+#include "tests/slim/error_orders.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
@@ -14,35 +15,23 @@ namespace {
 using testing::ExactSphere;
 using testing::ExactTorus;
 
-/// Root mean square of the model's distance at points of the exact surface.
-double rmsDistance(const SlimModel& model, const OrientedPoints& points) {
-  double sum = 0;
-  for (const OrientedPoint& point : points.points) {
-    const auto distance = static_cast<double>(model.nearest(point.position).distance);
-    sum += distance * distance;
-  }
-  return std::sqrt(sum / static_cast<double>(points.points.size()));
-}
-
 class ErrorOrder : public ::testing::TestWithParam<int> {};
 
-TEST_P(ErrorOrder, OnATorusIsOneMoreThanTheDegree) {
+TEST_P(ErrorOrder, OfTheDistanceIsOneMoreThanTheDegreeAndOfTheNormalTheDegree) {
   const int degree = GetParam();
   ThreadPool pool(2);
-  const ExactTorus torus;
-  const OrientedPoints points = torus.points(40000), unseen = torus.points(7001);
-  std::vector<double> errors;
-  for (const double radius : {0.32, 0.16}) {
-    SlimFitOptions options;
-    options.degree = degree;
-    options.radius = radius;
-    const SlimModel model(fitSlim(points, options, pool), degree, true, pool);
-    errors.push_back(rmsDistance(model, unseen));
+  for (const testing::OrderShape& shape : testing::orderShapes()) {
+    std::vector<testing::OrderPoint> points;
+    for (const double share : {1.0, 0.5})
+      points.push_back(testing::errorsAt(shape, degree, share * shape.radius, pool));
+    const double distance = testing::orderOf(points, &testing::OrderPoint::distance);
+    const double normal = testing::orderOf(points, &testing::OrderPoint::normal);
+    std::printf("%s, degree %d: distance %.3g, %.3g m, order %.2f; normal %.3g, %.3g rad, order %.2f\n",
+                shape.name.c_str(), degree, points[0].distance, points[1].distance, distance,
+                points[0].normal, points[1].normal, normal);
+    EXPECT_NEAR(distance, testing::expectedOrder(shape, degree), 0.4) << shape.name;
+    EXPECT_NEAR(normal, testing::expectedOrder(shape, degree) - 1, 0.4) << shape.name;
   }
-  const double order = std::log2(errors[0] / errors[1]);
-  RecordProperty("order", std::to_string(order));
-  std::printf("degree %d: rms error %.3g, %.3g m, order %.2f\n", degree, errors[0], errors[1], order);
-  EXPECT_NEAR(order, degree + 1, 0.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, ErrorOrder, ::testing::Values(1, 2, 3));

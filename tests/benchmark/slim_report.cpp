@@ -1,0 +1,97 @@
+// What SLIM surfaces can do, in numbers.
+//   slim_report --orders FILE.csv: errors of distance and normal over the radius of the balls on exact
+//   shapes,
+//     and their orders
+//   slim_report --mesh MESH: nodes against distances, and what an evaluation costs
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/io/output_file.h"
+#include "core/slim/bowl.h"
+#include "core/slim/mesh_sampling.h"
+#include "core/slim/slim_fitting.h"
+#include "tests/slim/error_orders.h"
+
+namespace migiwa {
+namespace {
+
+int writeOrders(const char* file) {
+  ThreadPool pool;
+  std::string csv = "shape,degree,radius_m,distance_m,normal_rad,distance_order,normal_order\n";
+  std::printf("order of the distance and of the normal, as measured (expected)\n");
+  for (const testing::OrderShape& shape : testing::orderShapes()) {
+    for (int degree = 1; degree <= kLargestSlimDegree; ++degree) {
+      std::vector<testing::OrderPoint> points;
+      for (const double share : {1.0, 0.7071, 0.5, 0.3536, 0.25})
+        points.push_back(testing::errorsAt(shape, degree, share * shape.radius, pool));
+      const double distance = testing::orderOf(points, &testing::OrderPoint::distance);
+      const double normal = testing::orderOf(points, &testing::OrderPoint::normal);
+      for (const testing::OrderPoint& point : points) {
+        char line[160];
+        std::snprintf(line, sizeof line, "%s,%d,%.4g,%.4g,%.4g,%.2f,%.2f\n", shape.name.c_str(), degree,
+                      point.radius, point.distance, point.normal, distance, normal);
+        csv += line;
+      }
+      const int expected = testing::expectedOrder(shape, degree);
+      std::printf("%-7s degree %d: distance %.2f (%d), normal %.2f (%d)\n", shape.name.c_str(), degree,
+                  distance, expected, normal, expected - 1);
+      std::fflush(stdout);
+    }
+  }
+  writeTextFile(file, csv);
+  return 0;
+}
+
+int reportMesh(const char* file) {
+  ThreadPool pool;
+  const ImportedShape shape = importShape(file);
+  const std::vector<OrientedPoint> unseen = samplePoints(shape.mesh, 100000, 2);
+  std::printf("%-7s %7s %12s %10s %8s %14s\n", "degree", "nodes", "largest (mm)", "mean (mm)", "fit (s)",
+              "evaluation (ns)");
+  for (int degree = 1; degree <= kLargestSlimDegree; ++degree) {
+    for (const int nodes : {1000, 5000, 25000, 100000}) {
+      SlimFitOptions options;
+      options.degree = degree;
+      options.nodes = nodes;
+      using Clock = std::chrono::steady_clock;
+      const auto start = Clock::now();
+      std::vector<SlimNode> fit = fitSlim(fitPoints(shape, nodes), options, pool);
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      const SlimModel model(std::move(fit), degree, shape.closed, pool);
+      const SlimStatistics statistics = measureSlim(model, unseen, pool);
+      // Distances of points at the surface: what a particle near it asks for.
+      double cost = std::numeric_limits<double>::infinity();
+      float sum = 0;
+      for (int round = 0; round < 5; ++round) {
+        const auto from = Clock::now();
+        for (const OrientedPoint& point : unseen) sum += model.nearest(point.position).distance;
+        cost = std::min(cost, std::chrono::duration<double, std::nano>(Clock::now() - from).count() /
+                                  static_cast<double>(unseen.size()));
+      }
+      if (!std::isfinite(sum)) return 3;
+      std::printf("%-7d %7zu %12.2f %10.3f %8.1f %14.0f\n", degree, model.nodes().size(),
+                  1000 * statistics.largest, 1000 * statistics.mean, seconds, cost);
+      std::fflush(stdout);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace migiwa
+
+int main(int argc, char** argv) {
+  try {
+    if (argc == 3 && std::strcmp(argv[1], "--orders") == 0) return migiwa::writeOrders(argv[2]);
+    if (argc == 3 && std::strcmp(argv[1], "--mesh") == 0) return migiwa::reportMesh(argv[2]);
+  } catch (const migiwa::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+  std::fprintf(stderr, "usage: slim_report --orders FILE.csv | --mesh MESH\n");
+  return 2;
+}
