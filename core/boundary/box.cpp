@@ -139,24 +139,6 @@ void Box::exits(const Vec3f& origin, const Directions& directions, std::span<flo
   for (std::size_t k = 0; k < exits.size(); ++k) exits[k] = crossing(local, directions, k).leave;
 }
 
-void Box::crossings(const Vec3f& origin, const Directions& directions, float,
-                    std::span<RayCrossings> out) const {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  const Vec3f local = toLocal(origin);
-  // The surface itself is fluid, as distance() has it.
-  const float beyond = (local.cwiseAbs() - half_).maxCoeff();
-  const bool within = fluid_ == Fluid::inside ? beyond <= 0 : beyond < 0;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const auto [enter, leave] = crossing(local, directions, k);
-    if (within) {
-      out[k] = {std::max(leave, 0.0F), kNever, kNever};
-    } else {
-      const bool passes = enter < leave && leave > 0;
-      out[k] = {passes ? std::max(enter, 0.0F) : kNever, passes ? leave : kNever, kNever};
-    }
-  }
-}
-
 float Box::thickness() const {
   return fluid_ == Fluid::outside ? 2 * half_.minCoeff() : Surface::thickness();
 }

@@ -51,19 +51,6 @@ void Plane::firstHits(const Vec3f& origin, const Directions& directions, std::sp
   hitPlane(unit_, unit_.dot(origin) - offset_, directions, hits);
 }
 
-void Plane::crossings(const Vec3f& origin, const Directions& directions, float,
-                      std::span<RayCrossings> out) const {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  const float d = unit_.dot(origin) - offset_;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const float towards =
-        -(unit_.x() * directions.x[k] + unit_.y() * directions.y[k] + unit_.z() * directions.z[k]);
-    // From the plane itself rays lead either into the solid at once or never.
-    const bool hits = d >= 0 ? towards > 0 : towards < 0;
-    out[k] = {hits ? d / towards : kNever, kNever, kNever};
-  }
-}
-
 void Plane::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const {
   // A square around the scene's shadow on the plane, with a few lines across.
   const Vec3d unit = unit_.cast<double>();

@@ -16,8 +16,6 @@ class Plane final : public Surface {
   bool project(Vec3f& p, float margin) const override;
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
-  void crossings(const Vec3f& origin, const Directions& directions, float reach,
-                 std::span<RayCrossings> out) const override;
   bool planar() const override { return true; }
   Bounds bounds() const override { return {}; }
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;

@@ -250,27 +250,6 @@ void Polynomial::exits(const Vec3f& origin, const Directions& directions, std::s
             });
 }
 
-void Polynomial::crossings(const Vec3f& origin, const Directions& directions, float reach,
-                           std::span<RayCrossings> out) const {
-  const double above = heightOf(origin), most = static_cast<double>(reach);
-  const bool inBall = toLocal(origin).norm() < radius_;
-  alongRays(origin, directions, above,
-            [&](std::size_t k, const Vec3d& o, const Vec3d& w, const Cubic& height) {
-              out[k].fill(std::numeric_limits<float>::infinity());
-              double sign = above < 0 ? -1 : 1, t = 0;
-              bool solid = above < 0 && inBall;
-              for (std::size_t found = 0; found < out[k].size(); sign = -sign) {
-                t = nextCrossing(height, sign, t, most);
-                if (t >= most) break;
-                // Outside the ball there is no surface to go in by.
-                const bool changes = sign < 0 ? solid : (o + t * w).norm() <= radius_;
-                if (!changes) continue;
-                out[k][found++] = static_cast<float>(t);
-                solid = !solid;
-              }
-            });
-}
-
 Bounds Polynomial::bounds() const {
   Bounds bounds;
   bounds.include(origin_);

@@ -26,8 +26,6 @@ class Polynomial final : public Surface {
   /// Over a dome or a saddle a ray may dip into the solid and come out.
   bool reentrant() const override { return true; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
-  void crossings(const Vec3f& origin, const Directions& directions, float reach,
-                 std::span<RayCrossings> out) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 

@@ -80,26 +80,6 @@ void Sphere::exits(const Vec3f& origin, const Directions& directions, std::span<
   }
 }
 
-void Sphere::crossings(const Vec3f& origin, const Directions& directions, float,
-                       std::span<RayCrossings> out) const {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  const Vec3f o = origin - center_;
-  const float length = o.norm();
-  const float c = (length - radius_) * (length + radius_);
-  // The surface itself is fluid, as distance() has it.
-  const bool within = fluid_ == Fluid::inside ? c <= 0 : c < 0;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const float b = o.x() * directions.x[k] + o.y() * directions.y[k] + o.z() * directions.z[k];
-    const float root = std::sqrt(std::max(b * b - c, 0.0F));
-    const bool passes = b * b > c && b < 0;
-    if (within) {
-      out[k] = {b > 0 ? -c / (b + root) : root - b, kNever, kNever};
-    } else {
-      out[k] = {passes ? c / (root - b) : kNever, passes ? root - b : kNever, kNever};
-    }
-  }
-}
-
 float Sphere::thickness() const {
   return fluid_ == Fluid::outside ? 2 * radius_ : Surface::thickness();
 }

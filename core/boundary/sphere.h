@@ -18,8 +18,6 @@ class Sphere final : public Surface {
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
   bool reentrant() const override { return fluid_ == Fluid::outside; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
-  void crossings(const Vec3f& origin, const Directions& directions, float reach,
-                 std::span<RayCrossings> out) const override;
   float thickness() const override;
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   Bounds bounds() const override;

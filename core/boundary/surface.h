@@ -33,9 +33,6 @@ enum class PieceRule {
   solidInsideAll,  ///< the solid is the intersection of the pieces' solid sides: a block
 };
 
-/// Where a ray changes between fluid and solid, nearest first; infinite where there are fewer changes.
-using RayCrossings = std::array<float, 3>;
-
 struct LineSegment {
   Vec3f from, to;
 };
@@ -83,10 +80,6 @@ class Surface {
   virtual void exits(const Vec3f&, const Directions&, std::span<float> exits) const {
     std::fill(exits.begin(), exits.end(), std::numeric_limits<float>::infinity());
   }
-
-  /// All changes of direction k between fluid and solid within `reach` (m) of an origin on either side.
-  virtual void crossings(const Vec3f& origin, const Directions& directions, float reach,
-                         std::span<RayCrossings> out) const;
 
   /// The least way through the solid (m), infinite where there is no far side. What lies behind a solid
   /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "core/base/error.h"
-#include "core/boundary/gamma/volume_rays.h"
+#include "core/boundary/gamma/fluid_lattice.h"
+#include "core/boundary/gamma/kernel_stencil.h"
+#include "core/boundary/spline_fit.h"
 
 namespace migiwa {
 
@@ -24,203 +27,111 @@ constexpr double kMostBlocks = 256.0 * 1024 * 1024;
   throw InputError(place, text);
 }
 
-/// A coefficient, or gamma, for the density kernel and for the kernel of the pair gradients.
-using Values = std::array<float, 2>;
-
-/// Nodes in blocks of kCells^3, for all blocks of a grid and one more around it; only near blocks that have
-/// coefficients.
-class NodeBlocks {
+/// gamma for the two kernels at the nodes of blocks: what is fluid about a node, weighed by their stencils.
+class NodeGammas {
  public:
-  static constexpr std::size_t kNodes = std::size_t{kCells} * kCells * kCells;
-  using Block = std::array<Values, kNodes>;
-  using Place = std::array<std::int32_t, 3>;
+  NodeGammas(const FluidLattice& fluid, KernelType kernel)
+      : fluid_(fluid),
+        density_(kernelStencil(kernel)),
+        pair_(kernel == KernelType::poly6 ? kernelStencil(KernelType::spiky) : density_) {}
 
-  explicit NodeBlocks(const GammaGrid& grid) {
-    std::size_t all = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      size_[axis] = grid.size[axis] + 2;
-      all *= static_cast<std::size_t>(size_[axis]);
+  void fill(const BlockPlace& place, BlockValues<2>& values) const {
+    FluidLattice::Window window;
+    if (!fluid_.window(place, window)) {
+      values.fill({window[0], window[0]});
+      return;
     }
-    index_.assign(all, -1);
-    std::size_t block = 0;
-    for (std::int32_t z = 0; z < grid.size[2]; ++z)
-      for (std::int32_t y = 0; y < grid.size[1]; ++y)
-        for (std::int32_t x = 0; x < grid.size[0]; ++x)
-          if (grid.blocks[block++] >= 0) addAround({x, y, z});
-  }
-
-  const std::vector<Place>& places() const { return places_; }
-  /// The block at a place, which may lie one outside the grid; -1: not there.
-  std::int32_t at(std::int32_t x, std::int32_t y, std::int32_t z) const {
-    if (x < -1 || y < -1 || z < -1 || x >= size_[0] - 1 || y >= size_[1] - 1 || z >= size_[2] - 1) return -1;
-    return index_[indexOf({x, y, z})];
+    for (std::size_t node = 0; node < values.size(); ++node) {
+      constexpr std::size_t kPerCell = FluidLattice::kPoints / kCells;
+      const std::size_t x = kPerCell * (node % kCells), y = kPerCell * (node / kCells % kCells),
+                        z = kPerCell * (node / kCells / kCells);
+      values[node] = around(&window[(z * FluidLattice::kSide + y) * FluidLattice::kStride + x]);
+    }
   }
 
  private:
-  std::size_t indexOf(const Place& place) const {
-    return (static_cast<std::size_t>(place[2] + 1) * static_cast<std::size_t>(size_[1]) +
-            static_cast<std::size_t>(place[1] + 1)) *
-               static_cast<std::size_t>(size_[0]) +
-           static_cast<std::size_t>(place[0] + 1);
-  }
-  void addAround(const Place& center) {
-    for (std::int32_t z = -1; z <= 1; ++z) {
-      for (std::int32_t y = -1; y <= 1; ++y) {
-        for (std::int32_t x = -1; x <= 1; ++x) {
-          const Place place{center[0] + x, center[1] + y, center[2] + z};
-          std::int32_t& index = index_[indexOf(place)];
-          if (index >= 0) continue;
-          index = static_cast<std::int32_t>(places_.size());
-          places_.push_back(place);
+  static constexpr std::size_t kRow = KernelStencil::kStride;
+
+  /// `fluid`: the first of the values that a stencil covers.
+  std::array<float, 2> around(const float* fluid) const {
+    std::array<float, kRow> density{}, pair{};
+    const float* one = density_.weights.data();
+    const float* other = pair_.weights.data();
+    for (int z = 0; z < KernelStencil::kSide; ++z) {
+      for (int y = 0; y < KernelStencil::kSide; ++y, one += kRow, other += kRow) {
+        const float* row =
+            fluid + static_cast<std::size_t>(z * FluidLattice::kSide + y) * FluidLattice::kStride;
+        for (std::size_t x = 0; x < kRow; ++x) {
+          density[x] += one[x] * row[x];
+          pair[x] += other[x] * row[x];
         }
       }
     }
+    return {std::accumulate(density.begin(), density.end(), 0.0F),
+            std::accumulate(pair.begin(), pair.end(), 0.0F)};
   }
 
-  std::array<std::int32_t, 3> size_{};
-  std::vector<std::int32_t> index_;
-  std::vector<Place> places_;
+  const FluidLattice& fluid_;
+  KernelStencil density_, pair_;
 };
-
-using Nodes = std::vector<NodeBlocks::Block>;
-
-/// Calls take(number, value) for the nodes [-Before, kCells + Behind) about a block along each axis, x
-/// fastest; null for those that are not there.
-template <int Before, int Behind, class Take>
-void gather(const NodeBlocks& layout, const Nodes& nodes, const NodeBlocks::Place& place, const Take& take) {
-  std::size_t at = 0;
-  for (int z = -Before; z < kCells + Behind; ++z) {
-    for (int y = -Before; y < kCells + Behind; ++y) {
-      for (int x = -Before; x < kCells + Behind; ++x, ++at) {
-        const auto side = [](int k) { return k < 0 ? -1 : k >= kCells ? 1 : 0; };
-        const auto within = [](int k) { return static_cast<std::size_t>((k + kCells) % kCells); };
-        const std::int32_t block = layout.at(place[0] + side(x), place[1] + side(y), place[2] + side(z));
-        const std::size_t node = (within(z) * kCells + within(y)) * kCells + within(x);
-        take(at, block < 0 ? nullptr : &nodes[static_cast<std::size_t>(block)][node]);
-      }
-    }
-  }
-}
-
-/// One step from values towards the coefficients of the spline through them: adds what the spline lacks.
-void sharpen(const NodeBlocks& layout, const Nodes& values, const Nodes& coefficients, std::size_t block,
-             NodeBlocks::Block& out) {
-  constexpr std::size_t kSide = kCells + 2;
-  std::array<Values, kSide * kSide * kSide> around{};
-  std::array<bool, kSide * kSide * kSide> known{};
-  gather<1, 1>(layout, coefficients, layout.places()[block], [&](std::size_t at, const Values* value) {
-    known[at] = value != nullptr;
-    if (value != nullptr) around[at] = *value;
-  });
-  constexpr std::array<float, 3> kSpline{1.0F / 6, 2.0F / 3, 1.0F / 6};
-  std::size_t node = 0;
-  for (std::size_t z = 0; z < kCells; ++z) {
-    for (std::size_t y = 0; y < kCells; ++y) {
-      for (std::size_t x = 0; x < kCells; ++x, ++node) {
-        const Values own = coefficients[block][node];
-        Values spline{};
-        for (std::size_t k = 0; k < 27; ++k) {
-          const std::size_t i = k % 3, j = k / 3 % 3, l = k / 9;
-          const std::size_t at = ((z + l) * kSide + y + j) * kSide + x + i;
-          const float weight = kSpline[i] * kSpline[j] * kSpline[l];
-          for (std::size_t v = 0; v < 2; ++v) spline[v] += weight * (known[at] ? around[at][v] : own[v]);
-        }
-        for (std::size_t v = 0; v < 2; ++v) out[node][v] = own[v] + values[block][node][v] - spline[v];
-      }
-    }
-  }
-}
 
 }  // namespace
 
 double blocksIn(const BakeSettings& settings) {
-  const double edge = kCells * static_cast<double>(settings.cell);
+  const double edge = GammaGrid::kCells * static_cast<double>(settings.cell);
   return ((settings.region.size() / edge).array().floor() + 1).prod();
 }
 
-GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings) {
+GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadPool& pool) {
   GammaGrid grid;
   grid.cell = settings.cell;
   grid.origin = settings.region.min.cast<float>();
-  const double edge = kCells * static_cast<double>(settings.cell);
   if (const double blocks = blocksIn(settings); !(blocks < kMostBlocks))
     refuse(settings.place, sizeof(std::int32_t) * blocks);
   for (int axis = 0; axis < 3; ++axis)
     grid.size[static_cast<std::size_t>(axis)] =
-        static_cast<std::int32_t>(settings.region.size()[axis] / edge) + 1;
-  const float h = settings.supportRadius, half = 0.5F * static_cast<float>(edge);
+        static_cast<std::int32_t>(settings.region.size()[axis] / static_cast<double>(grid.blockEdge())) + 1;
+  const float h = settings.supportRadius, half = 0.5F * grid.blockEdge();
   const float around = std::sqrt(3.0F) * half;
-  std::int32_t used = 0;
-  for (std::int32_t z = 0; z < grid.size[2]; ++z) {
-    for (std::int32_t y = 0; y < grid.size[1]; ++y) {
-      for (std::int32_t x = 0; x < grid.size[0]; ++x) {
-        const Vec3f index(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-        const Vec3f center = grid.origin + static_cast<float>(edge) * index + Vec3f::Constant(half);
-        const float distance = boundary.distance(center);
-        // What a thin wall hides jumps across it: no spline.
-        const bool thin =
-            std::any_of(boundary.surfaces().begin(), boundary.surfaces().end(), [&](const auto& s) {
-              Vec3f ignored;
-              return s->thickness() < h && s->distance(center, ignored) < h + around;
-            });
-        if (distance >= h + around) {
-          grid.blocks.push_back(GammaGrid::kFar);
-        } else if (thin || distance <= -(settings.cell + around)) {
-          grid.blocks.push_back(GammaGrid::kElsewhere);
-        } else {
-          grid.blocks.push_back(used++);
-        }
-      }
+  std::vector<const Surface*> thin;
+  for (const auto& surface : boundary.surfaces())
+    if (surface->thickness() < h) thin.push_back(surface.get());
+  constexpr std::int32_t kUsed = 0;
+  const auto kindOf = [&](const Vec3f& center) {
+    const float distance = boundary.distance(center);
+    if (distance >= h + around) return GammaGrid::kFar;
+    // What a thin wall hides jumps across it: no spline.
+    const bool hides = std::any_of(thin.begin(), thin.end(), [&](const Surface* surface) {
+      Vec3f ignored;
+      return surface->distance(center, ignored) < h + around;
+    });
+    return hides || distance <= -(settings.cell + around) ? GammaGrid::kElsewhere : kUsed;
+  };
+  const auto width = static_cast<std::size_t>(grid.size[0]), height = static_cast<std::size_t>(grid.size[1]);
+  const std::size_t rows = height * static_cast<std::size_t>(grid.size[2]);
+  grid.blocks.resize(rows * width);
+  pool.run(rows, [&](std::size_t row) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const Vec3f index(static_cast<float>(x), static_cast<float>(row % height),
+                        static_cast<float>(row / height));
+      grid.blocks[row * width + x] = kindOf(grid.origin + grid.blockEdge() * index + Vec3f::Constant(half));
     }
-  }
+  });
+  std::int32_t used = 0;
+  for (std::int32_t& block : grid.blocks)
+    if (block == kUsed) block = used++;
   const double bytes = static_cast<double>(used) * GammaGrid::kBlockFloats * sizeof(float);
   if (bytes > kMostGridBytes) refuse(settings.place, bytes);
   return grid;
 }
 
 void bake(const Boundary& boundary, const BakeSettings& settings, ThreadPool& pool, GammaGrid& grid) {
-  const NodeBlocks layout(grid);
-  const std::size_t count = layout.places().size();
-  const VolumeRays rays(boundary, settings.kernel, settings.supportRadius, settings.directions);
-  Nodes values(count);
-  pool.run(count, [&](std::size_t block) {
-    VolumeRays::Scratch scratch;
-    for (std::size_t node = 0; node < NodeBlocks::kNodes; ++node) {
-      const auto along = [&](std::size_t axis, std::size_t within) {
-        return static_cast<float>(layout.places()[block][axis] * kCells + static_cast<std::int32_t>(within));
-      };
-      const Vec3f index(along(0, node % kCells), along(1, node / kCells % kCells),
-                        along(2, node / kCells / kCells));
-      values[block][node] = rays.at(grid.origin + settings.cell * index, scratch);
-    }
-  });
-
-  // Each step leaves, of a wave of two support radii in the values, about a twentieth of the error.
-  constexpr int kSteps = 4;
-  Nodes coefficients = values, next(count);
-  for (int step = 0; step < kSteps; ++step) {
-    pool.run(count, [&](std::size_t block) { sharpen(layout, values, coefficients, block, next[block]); });
-    coefficients.swap(next);
-  }
-
-  std::size_t used = 0;
-  for (const std::int32_t block : grid.blocks) used += block >= 0 ? 1 : 0;
-  grid.coefficients.resize(used * GammaGrid::kBlockFloats);
-  std::size_t block = 0;
-  for (std::int32_t z = 0; z < grid.size[2]; ++z) {
-    for (std::int32_t y = 0; y < grid.size[1]; ++y) {
-      for (std::int32_t x = 0; x < grid.size[0]; ++x, ++block) {
-        if (grid.blocks[block] < 0) continue;
-        float* to =
-            &grid.coefficients[static_cast<std::size_t>(grid.blocks[block]) * GammaGrid::kBlockFloats];
-        gather<1, 2>(layout, coefficients, {x, y, z}, [&](std::size_t at, const Values* value) {
-          const Values known = value != nullptr ? *value : Values{};  // never missing about a block
-          to[2 * at] = known[0];
-          to[2 * at + 1] = known[1];
-        });
-      }
-    }
-  }
+  const BlockLayout layout(grid.size, grid.blocks);
+  const FluidLattice fluid(boundary, grid.origin, settings.supportRadius / KernelStencil::kPerSupport,
+                           layout.places(), pool);
+  const NodeGammas gammas(fluid, settings.kernel);
+  fitSplines<2>(grid, layout, pool,
+                [&](const BlockPlace& place, BlockValues<2>& values) { gammas.fill(place, values); });
 }
 
 }  // namespace migiwa

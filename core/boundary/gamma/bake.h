@@ -1,5 +1,7 @@
-// Fills a GammaGrid: gamma at its nodes by many directions, on both sides of the walls, then the coefficients
-// of the splines through them.
+// Fills a GammaGrid: gamma at its nodes, on both sides of the walls, then the coefficients of the splines
+// through them. Eq. 6 is a convolution of the kernel with the fluid side's indicator, so all that is asked of
+// the walls is their distance, on a lattice of a tenth of the support radius (fluid_lattice.h): the cost does
+// not depend on what the walls are made of. Behind a solid that ends within the kernel fluid counts again.
 #pragma once
 
 #include <string>
@@ -14,7 +16,6 @@ struct BakeSettings {
   KernelType kernel;
   float supportRadius;  ///< (m)
   float cell;           ///< (m)
-  int directions;       ///< at each node
   Bounds region;        ///< what the grid covers (m)
   std::string place;    ///< of the gamma method in the scene file, for errors
 };
@@ -26,7 +27,7 @@ inline constexpr double kMostGridBytes = 1024.0 * 1024 * 1024;
 double blocksIn(const BakeSettings& settings);
 /// The grid without coefficients: which blocks get some. Throws InputError where they would take too much
 /// memory.
-GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings);
+GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadPool& pool);
 void bake(const Boundary& boundary, const BakeSettings& settings, ThreadPool& pool, GammaGrid& grid);
 
 }  // namespace migiwa

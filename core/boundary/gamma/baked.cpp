@@ -1,6 +1,6 @@
-// gamma from a grid about the walls that is made once, from many directions, and kept on disk: for walls that
-// stand still and cost much to look at. Where a thin wall is near, deep in the solid and outside the grid,
-// directions take its place.
+// gamma from a grid about the walls that is made once and kept on disk: for walls that stand still and cost
+// much to look at. Where a thin wall is near, deep in the solid and outside the grid, directions take its
+// place.
 #include <algorithm>
 #include <cstdio>
 #include <limits>
@@ -13,11 +13,10 @@ namespace migiwa {
 
 namespace {
 
-/// Cells along a support radius, and directions at a node: with these the grid is within 0.005.
+/// Cells along a support radius: with these the grid is within 0.005.
 constexpr float kCellsPerSupport = 5;
-constexpr int kDirections = 1024;
-/// Some two seconds on one core for spheres, and what is laid out in less.
-constexpr double kQuickRays = 2e8, kQuickBlocks = 1e6;
+/// Some seconds on one core: blocks with coefficients, and all of them.
+constexpr double kQuickUsed = 2e4, kQuickBlocks = 1e6;
 
 class BakedGamma final : public GammaMethod {
  public:
@@ -26,7 +25,9 @@ class BakedGamma final : public GammaMethod {
                       double mostBlocks = std::numeric_limits<double>::infinity())
       : boundary_(context.boundary),
         support_(context.supportRadius),
-        elsewhere_(makeDirectionsGamma(fine(context))) {
+        elsewhere_(makeDirectionsGamma(fine(context))),
+        ownPool_(context.pool != nullptr ? nullptr : std::make_unique<ThreadPool>(1)),
+        pool_(context.pool != nullptr ? *context.pool : *ownPool_) {
     Bounds region = context.region;
     if (region.empty())
       for (const auto& surface : boundary_.surfaces()) region.include(surface->bounds());
@@ -34,29 +35,22 @@ class BakedGamma final : public GammaMethod {
       reason_ = "walls without end and no fluid: 1024 directions instead of a grid";
       return;
     }
-    settings_ = {context.kernel,
-                 support_,
-                 support_ / kCellsPerSupport,
-                 kDirections,
-                 region.grown(static_cast<double>(support_)),
-                 context.place};
-    if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_);
+    settings_ = {context.kernel, support_, support_ / kCellsPerSupport,
+                 region.grown(static_cast<double>(support_)), context.place};
+    if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_, pool_);
   }
 
   bool laidOut() const { return !grid_.blocks.empty(); }
-  /// What filling the grid takes: rays to be followed, over all nodes and surfaces.
-  double rays() const {
-    const auto blocks =
-        std::count_if(grid_.blocks.begin(), grid_.blocks.end(), [](auto at) { return at >= 0; });
-    constexpr int kNodes = GammaGrid::kCells * GammaGrid::kCells * GammaGrid::kCells;
-    return static_cast<double>(blocks) * kNodes * kDirections *
-           static_cast<double>(boundary_.surfaces().size());
+  /// Blocks to be filled.
+  double used() const {
+    return static_cast<double>(
+        std::count_if(grid_.blocks.begin(), grid_.blocks.end(), [](auto at) { return at >= 0; }));
   }
 
   /// Reads the grid or makes it.
-  void fill(ThreadPool* pool) {
+  void fill() {
     if (!laidOut()) return;
-    const std::string source = readOrMake(pool);
+    const std::string source = readOrMake();
     const double mebibytes = static_cast<double>(grid_.coefficients.size() * sizeof(float)) / (1024.0 * 1024);
     char text[64];
     std::snprintf(text, sizeof text, "a grid of %.1f MiB, ", mebibytes);
@@ -91,7 +85,7 @@ class BakedGamma final : public GammaMethod {
   }
 
   /// Says what it did.
-  std::string readOrMake(ThreadPool* pool) {
+  std::string readOrMake() {
     const std::string key = keyOf(settings_);
     const std::filesystem::path folder = cacheFolder();
     const std::filesystem::path file = folder.empty() ? folder : gridFile(folder, key);
@@ -101,12 +95,7 @@ class BakedGamma final : public GammaMethod {
         return "read from " + file.string();
       }
     }
-    if (pool != nullptr) {
-      bake(boundary_, settings_, *pool, grid_);
-    } else {
-      ThreadPool alone(1);
-      bake(boundary_, settings_, alone, grid_);
-    }
+    bake(boundary_, settings_, pool_, grid_);
     const bool kept = !file.empty() && writeGrid(file, key, grid_);
     return kept ? "made and kept in " + file.string()
                 : "made and not kept: no folder to write to; MIGIWA_CACHE in the environment can name one";
@@ -115,17 +104,19 @@ class BakedGamma final : public GammaMethod {
   /// Everything that the grid depends on.
   std::string keyOf(const BakeSettings& settings) const {
     char text[256];
-    std::snprintf(text, sizeof text, "directions %d kernel %d support %a cell %a region %a %a %a %a %a %a\n",
-                  settings.directions, static_cast<int>(settings.kernel),
-                  static_cast<double>(settings.supportRadius), static_cast<double>(settings.cell),
-                  settings.region.min.x(), settings.region.min.y(), settings.region.min.z(),
-                  settings.region.max.x(), settings.region.max.y(), settings.region.max.z());
+    std::snprintf(text, sizeof text, "kernel %d support %a cell %a region %a %a %a %a %a %a\n",
+                  static_cast<int>(settings.kernel), static_cast<double>(settings.supportRadius),
+                  static_cast<double>(settings.cell), settings.region.min.x(), settings.region.min.y(),
+                  settings.region.min.z(), settings.region.max.x(), settings.region.max.y(),
+                  settings.region.max.z());
     return text + describeWalls(boundary_);
   }
 
   const Boundary& boundary_;
   float support_;
   std::unique_ptr<GammaMethod> elsewhere_;
+  std::unique_ptr<ThreadPool> ownPool_;
+  ThreadPool& pool_;
   BakeSettings settings_{};
   GammaGrid grid_;
   std::string reason_;
@@ -135,14 +126,14 @@ class BakedGamma final : public GammaMethod {
 
 std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context) {
   auto method = std::make_unique<BakedGamma>(context);
-  method->fill(context.pool);
+  method->fill();
   return method;
 }
 
 std::unique_ptr<GammaMethod> makeBakedGammaIfQuick(const GammaContext& context) {
   auto method = std::make_unique<BakedGamma>(context, kQuickBlocks);
-  if (!method->laidOut() || method->rays() > kQuickRays) return nullptr;
-  method->fill(context.pool);
+  if (!method->laidOut() || method->used() > kQuickUsed) return nullptr;
+  method->fill();
   return method;
 }
 

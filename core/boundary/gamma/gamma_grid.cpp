@@ -13,29 +13,12 @@ namespace migiwa::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Cubic B-spline weights of the four nodes about a place t in [0, 1) of a cell, and their derivatives.
-struct Weights {
-  float value[4], slope[4];
-
-  HWY_INLINE explicit Weights(float t) {
-    const float u = 1 - t, t2 = t * t, u2 = u * u;
-    value[0] = u2 * u * (1.0F / 6);
-    value[1] = 2.0F / 3 - t2 * (1 - 0.5F * t);
-    value[2] = 2.0F / 3 - u2 * (1 - 0.5F * u);
-    value[3] = t2 * t * (1.0F / 6);
-    slope[0] = -0.5F * u2;
-    slope[1] = t * (1.5F * t - 2);
-    slope[2] = -u * (1.5F * u - 2);
-    slope[3] = 0.5F * t2;
-  }
-};
-
 HWY_INLINE void interpolateAt(const float* HWY_RESTRICT block, const Vec3f& at,
                               const std::array<int, 3>& cell, float toGradient, GammaSample& sample) {
   using D = hn::CappedTag<float, 8>;
   const D d;
   constexpr std::size_t kParts = 8 / hn::MaxLanes(d);
-  const Weights wx(at.x()), wy(at.y()), wz(at.z());
+  const SplineWeights wx(at.x()), wy(at.y()), wz(at.z());
   constexpr int kRow = 2 * GammaGrid::kNodes, kLayer = kRow * GammaGrid::kNodes;
   const float* from = block + cell[2] * kLayer + cell[1] * kRow + 2 * cell[0];
   // Four nodes of a row are eight floats: both kernels at once.
@@ -100,17 +83,6 @@ HWY_AFTER_NAMESPACE();
 namespace migiwa {
 
 HWY_EXPORT(interpolateBatch);
-
-std::int32_t GammaGrid::blockAt(const Vec3f& p) const {
-  const Vec3f at = (p - origin) / cell;
-  std::size_t index = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const auto along = static_cast<std::size_t>(axis);
-    if (!(at[axis] >= 0 && at[axis] < static_cast<float>(size[along] * kCells))) return kElsewhere;
-    index = index * static_cast<std::size_t>(size[along]) + static_cast<std::size_t>(at[axis]) / kCells;
-  }
-  return blocks[index];
-}
 
 void interpolate(const GammaGrid& grid, float supportRadius, std::span<const Float4> points,
                  std::span<const std::int32_t> blocks, std::span<GammaSample> out) {

@@ -87,7 +87,7 @@ class TextVisitor final : public FieldVisitor {
 
 constexpr std::array<char, 8> kMagic{'m', 'i', 'g', 'i', 'w', 'a', 'g', 'g'};
 /// Raised whenever the file or what it means changes.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 /// Tells a machine with another order of bytes.
 constexpr std::uint32_t kOrder = 0x01020304;
 

@@ -56,18 +56,6 @@ struct Rays {
   }
 };
 
-struct Mass {
-  template <class Kernel>
-  static void run(std::span<const float> lengths, float supportRadius, float& total) {
-    const D d;
-    const V inverse = hn::Set(d, 1 / supportRadius), one = hn::Set(d, 1.0F);
-    V mass = hn::Zero(d);
-    for (std::size_t k = 0; k < lengths.size(); k += hn::Lanes(d))
-      mass = hn::Add(mass, Kernel::mass(d, hn::Min(hn::Mul(hn::LoadU(d, &lengths[k]), inverse), one)));
-    total = hn::GetLane(hn::SumOfLanes(d, mass));
-  }
-};
-
 struct Beyond {
   template <class Kernel>
   static void run(const Directions& directions, std::span<const HalfSpace> planes, RaySums& total) {
@@ -104,10 +92,6 @@ void raysBatch(KernelType kernel, const Directions& directions, std::span<const 
   withKernelLanes<Rays>(kernel, directions, hits, supportRadius, sign, sums);
 }
 
-void massBatch(KernelType kernel, std::span<const float> lengths, float supportRadius, float& sum) {
-  withKernelLanes<Mass>(kernel, lengths, supportRadius, sum);
-}
-
 void beyondBatch(KernelType kernel, const Directions& directions, std::span<const HalfSpace> planes,
                  RaySums& sums) {
   withKernelLanes<Beyond>(kernel, directions, planes, sums);
@@ -120,7 +104,6 @@ HWY_AFTER_NAMESPACE();
 namespace migiwa {
 
 HWY_EXPORT(raysBatch);
-HWY_EXPORT(massBatch);
 HWY_EXPORT(beyondBatch);
 
 namespace {
@@ -169,12 +152,6 @@ Directions groupedDirections(int count) {
 void addRays(KernelType kernel, const Directions& directions, std::span<const float> hits,
              float supportRadius, float sign, RaySums& sums) {
   HWY_DYNAMIC_DISPATCH(raysBatch)(kernel, directions, hits, supportRadius, sign, sums);
-}
-
-float massOfRays(KernelType kernel, std::span<const float> lengths, float supportRadius) {
-  float sum = 0;
-  HWY_DYNAMIC_DISPATCH(massBatch)(kernel, lengths, supportRadius, sum);
-  return sum;
 }
 
 RaySums beyondFirstPlane(KernelType kernel, const Directions& directions, std::span<const HalfSpace> planes) {

@@ -24,9 +24,6 @@ struct RaySums {
 void addRays(KernelType kernel, const Directions& directions, std::span<const float> hits,
              float supportRadius, float sign, RaySums& sums);
 
-/// Sum of G over rays of these lengths (m), whatever their directions. A multiple of eight of them.
-float massOfRays(KernelType kernel, std::span<const float> lengths, float supportRadius);
-
 /// What the rays hold up to the first of the planes, less what they hold up to the first plane alone: the
 /// rest that directions add to a closed form. A point behind a plane is taken to lie on it. At most
 /// kMostRayPlanes of them.
