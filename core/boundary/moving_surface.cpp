@@ -79,11 +79,6 @@ void MovingSurface::exits(const Vec3f& origin, const Directions& directions, std
   rest_->exits(toRest(origin), turned_ ? turned(directions, toRest_) : directions, exits);
 }
 
-void MovingSurface::crossings(const Vec3f& origin, const Directions& directions, float reach,
-                              std::span<RayCrossings> out) const {
-  rest_->crossings(toRest(origin), turned_ ? turned(directions, toRest_) : directions, reach, out);
-}
-
 bool MovingSurface::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
   if (!rest_->crosses(toRest(from), toRest(to), normal, entry)) return false;
   normal = directionToWorld(normal);

@@ -33,8 +33,6 @@ class MovingSurface final : public Surface {
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
   bool reentrant() const override { return rest_->reentrant(); }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
-  void crossings(const Vec3f& origin, const Directions& directions, float reach,
-                 std::span<RayCrossings> out) const override;
   float thickness() const override { return rest_->thickness(); }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return rest_->planar(); }

@@ -18,6 +18,7 @@ class SlimSurface : public Surface {
       : data_(std::move(data)), fluid_(fluid) {}
 
   void describe(FieldVisitor& visitor) override;
+  bool costlyDistance() const override { return data_ && data_->model->closed(); }
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;

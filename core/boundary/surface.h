@@ -63,6 +63,11 @@ class Surface {
   /// Signed distance of p, and the unit normal at the nearest point of the wall.
   virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
 
+  /// Whether distance() takes so long that a grid in its place pays: true only for a solid that is closed.
+  virtual bool costlyDistance() const { return false; }
+  /// The shape itself where this one stands for it with approximate distances; null where it is exact.
+  virtual std::shared_ptr<const Surface> exact() const { return nullptr; }
+
   /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where
   /// two of its walls leave no room. Returns whether p moved.
   virtual bool project(Vec3f& p, float margin) const = 0;

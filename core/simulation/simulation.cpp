@@ -7,6 +7,7 @@
 #include "core/base/state_hash.h"
 #include "core/boundary/boundary.h"
 #include "core/boundary/gamma_method.h"
+#include "core/boundary/gridded_surface.h"
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
 #include "core/solver/pbf_solver.h"
@@ -16,8 +17,11 @@ namespace migiwa {
 
 struct Simulation::State {
   State(Scene theScene, int threads)
-      : scene(std::move(theScene)), pool(threads), boundary(scene.surfaces), step(pool, boundary) {}
+      : scene(std::move(theScene)), pool(threads), boundary(walls()), step(pool, boundary) {}
 
+  Boundary walls() {
+    return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool));
+  }
   void configure();
   void advanceSubstep(float dt);
 
@@ -46,7 +50,11 @@ void Simulation::State::configure() {
   step.parameters = scene.solver;
   step.gravity = scene.gravity.cast<float>();
   step.spacing = static_cast<float>(scene.particleSpacing);
-  step.supportRadius = static_cast<float>(scene.supportRadius());
+  if (const auto supportRadius = static_cast<float>(scene.supportRadius());
+      supportRadius != step.supportRadius) {
+    if (step.supportRadius > 0) boundary = walls();
+    step.supportRadius = supportRadius;
+  }
   step.thinWalls = thinWalls(boundary, step.supportRadius);
   step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
   gamma = {};

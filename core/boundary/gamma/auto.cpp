@@ -25,11 +25,15 @@ class AutoGamma final : public GammaMethod {
       : boundary_(context.boundary),
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
-        methods_{makeProductGamma(context), makeAboutCurves(context)},
-        baked_(methods_[kDirections] != nullptr),
+        methods_{makeProductGamma(context), nullptr},
         curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
                              [](const auto& surface) { return surface->planar(); })) {
-    if (!baked_) methods_[kDirections] = makeDirectionsGamma(fine(context));
+    if (std::unique_ptr<GridGamma> grid = makeAboutCurves(context)) {
+      grid_ = grid.get();
+      methods_[kDirections] = std::move(grid);
+    } else {
+      methods_[kDirections] = makeDirectionsGamma(fine(context));
+    }
   }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
@@ -65,10 +69,11 @@ class AutoGamma final : public GammaMethod {
     const bool planar =
         std::all_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s->planar(); });
     if (!planar) {
-      const std::string curved = baked_ ? "baked" : "directions";
+      const std::string curved = grid_ != nullptr ? "baked" : "directions";
       const std::string why =
-          baked_ ? "; curved walls: " + methods_[kDirections]->choice().reason
-                 : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
+          grid_ != nullptr
+              ? "; curved walls: " + methods_[kDirections]->choice().reason
+              : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
       if (curved_) return {curved, "all walls are curved" + why};
       return {"product, " + curved, "by the walls in reach of each particle" + why};
     }
@@ -84,7 +89,7 @@ class AutoGamma final : public GammaMethod {
 
  private:
   /// A grid about the curved walls; null where there are none, or too large ones.
-  static std::unique_ptr<GammaMethod> makeAboutCurves(GammaContext context) {
+  static std::unique_ptr<GridGamma> makeAboutCurves(GammaContext context) {
     Bounds curves;
     for (const auto& surface : context.boundary.surfaces())
       if (!surface->planar()) curves.include(surface->bounds());
@@ -121,6 +126,7 @@ class AutoGamma final : public GammaMethod {
   }
 
   Pick pick(const Vec3f& p, HalfSpaces& walls) const {
+    if (grid_ != nullptr && grid_->covers(p)) return kDirections;
     for (const auto& surface : boundary_.surfaces()) {
       if (surface->planar()) continue;
       Vec3f normal;
@@ -144,8 +150,8 @@ class AutoGamma final : public GammaMethod {
   float support_;
   std::optional<FlatPlanes> flat_;
   std::unique_ptr<GammaMethod> methods_[2];
-  bool baked_;   ///< the last is a grid
-  bool curved_;  ///< all walls are
+  const GridGamma* grid_ = nullptr;  ///< the last, if it is one
+  bool curved_;                      ///< all walls are
 };
 
 }  // namespace

@@ -93,13 +93,20 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
         static_cast<std::int32_t>(settings.region.size()[axis] / static_cast<double>(grid.blockEdge())) + 1;
   const float h = settings.supportRadius, half = 0.5F * grid.blockEdge();
   const float around = std::sqrt(3.0F) * half;
-  std::vector<const Surface*> thin;
-  for (const auto& surface : boundary.surfaces())
+  std::vector<const Surface*> thin, curves;
+  for (const auto& surface : boundary.surfaces()) {
     if (surface->thickness() < h) thin.push_back(surface.get());
+    if (!surface->planar()) curves.push_back(surface.get());
+  }
   constexpr std::int32_t kUsed = 0;
   const auto kindOf = [&](const Vec3f& center) {
     const float distance = boundary.distance(center);
     if (distance >= h + around) return GammaGrid::kFar;
+    const bool curved = std::any_of(curves.begin(), curves.end(), [&](const Surface* surface) {
+      Vec3f ignored;
+      return surface->distance(center, ignored) < h + around;
+    });
+    if (settings.curvedOnly && !curved) return GammaGrid::kElsewhere;
     // What a thin wall hides jumps across it: no spline.
     const bool hides = std::any_of(thin.begin(), thin.end(), [&](const Surface* surface) {
       Vec3f ignored;

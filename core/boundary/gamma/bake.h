@@ -17,6 +17,7 @@ struct BakeSettings {
   float supportRadius;  ///< (m)
   float cell;           ///< (m)
   Bounds region;        ///< what the grid covers (m)
+  bool curvedOnly;      ///< leaves the places out that only planar walls reach
   std::string place;    ///< of the gamma method in the scene file, for errors
 };
 

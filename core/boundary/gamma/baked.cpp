@@ -18,12 +18,13 @@ constexpr float kCellsPerSupport = 5;
 /// Some seconds on one core: blocks with coefficients, and all of them.
 constexpr double kQuickUsed = 2e4, kQuickBlocks = 1e6;
 
-class BakedGamma final : public GammaMethod {
+class BakedGamma final : public GridGamma {
  public:
   /// A grid of more blocks than `mostBlocks` is not even laid out.
-  explicit BakedGamma(const GammaContext& context,
+  explicit BakedGamma(const GammaContext& context, bool curvedOnly = false,
                       double mostBlocks = std::numeric_limits<double>::infinity())
       : boundary_(context.boundary),
+        exact_(exactWalls(boundary_)),
         support_(context.supportRadius),
         elsewhere_(makeDirectionsGamma(fine(context))),
         ownPool_(context.pool != nullptr ? nullptr : std::make_unique<ThreadPool>(1)),
@@ -35,9 +36,13 @@ class BakedGamma final : public GammaMethod {
       reason_ = "walls without end and no fluid: 1024 directions instead of a grid";
       return;
     }
-    settings_ = {context.kernel, support_, support_ / kCellsPerSupport,
-                 region.grown(static_cast<double>(support_)), context.place};
-    if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(boundary_, settings_, pool_);
+    settings_ = {context.kernel,
+                 support_,
+                 support_ / kCellsPerSupport,
+                 region.grown(static_cast<double>(support_)),
+                 curvedOnly,
+                 context.place};
+    if (blocksIn(settings_) <= mostBlocks) grid_ = layOut(exact_, settings_, pool_);
   }
 
   bool laidOut() const { return !grid_.blocks.empty(); }
@@ -58,6 +63,7 @@ class BakedGamma final : public GammaMethod {
   }
 
   GammaChoice choice() const override { return {"baked", reason_}; }
+  bool covers(const Vec3f& p) const override { return laidOut() && grid_.blockAt(p) >= 0; }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     std::array<std::int32_t, kBatch> blocks;
@@ -79,6 +85,15 @@ class BakedGamma final : public GammaMethod {
  private:
   static constexpr std::size_t kBatch = 64;
 
+  static Boundary exactWalls(const Boundary& boundary) {
+    std::vector<std::shared_ptr<const Surface>> surfaces;
+    for (const auto& surface : boundary.surfaces()) {
+      std::shared_ptr<const Surface> exact = surface->exact();
+      surfaces.push_back(exact ? std::move(exact) : surface);
+    }
+    return Boundary::atRest(std::move(surfaces));
+  }
+
   static GammaContext fine(GammaContext context) {
     context.directions = 1024;
     return context;
@@ -95,7 +110,7 @@ class BakedGamma final : public GammaMethod {
         return "read from " + file.string();
       }
     }
-    bake(boundary_, settings_, pool_, grid_);
+    bake(exact_, settings_, pool_, grid_);
     const bool kept = !file.empty() && writeGrid(file, key, grid_);
     return kept ? "made and kept in " + file.string()
                 : "made and not kept: no folder to write to; MIGIWA_CACHE in the environment can name one";
@@ -104,15 +119,16 @@ class BakedGamma final : public GammaMethod {
   /// Everything that the grid depends on.
   std::string keyOf(const BakeSettings& settings) const {
     char text[256];
-    std::snprintf(text, sizeof text, "kernel %d support %a cell %a region %a %a %a %a %a %a\n",
+    std::snprintf(text, sizeof text, "kernel %d support %a cell %a curved %d region %a %a %a %a %a %a\n",
                   static_cast<int>(settings.kernel), static_cast<double>(settings.supportRadius),
-                  static_cast<double>(settings.cell), settings.region.min.x(), settings.region.min.y(),
-                  settings.region.min.z(), settings.region.max.x(), settings.region.max.y(),
-                  settings.region.max.z());
-    return text + describeWalls(boundary_);
+                  static_cast<double>(settings.cell), settings.curvedOnly ? 1 : 0, settings.region.min.x(),
+                  settings.region.min.y(), settings.region.min.z(), settings.region.max.x(),
+                  settings.region.max.y(), settings.region.max.z());
+    return text + describeWalls(exact_);
   }
 
   const Boundary& boundary_;
+  Boundary exact_;  ///< the same walls without grids of distances: what the grid of gamma is made from
   float support_;
   std::unique_ptr<GammaMethod> elsewhere_;
   std::unique_ptr<ThreadPool> ownPool_;
@@ -130,8 +146,8 @@ std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context) {
   return method;
 }
 
-std::unique_ptr<GammaMethod> makeBakedGammaIfQuick(const GammaContext& context) {
-  auto method = std::make_unique<BakedGamma>(context, kQuickBlocks);
+std::unique_ptr<GridGamma> makeBakedGammaIfQuick(const GammaContext& context) {
+  auto method = std::make_unique<BakedGamma>(context, true, kQuickBlocks);
   if (!method->laidOut() || method->used() > kQuickUsed) return nullptr;
   method->fill();
   return method;

@@ -61,10 +61,10 @@ HWY_INLINE void interpolateAt(const float* HWY_RESTRICT block, const Vec3f& at,
 
 void interpolateBatch(const GammaGrid& grid, float supportRadius, std::span<const Float4> points,
                       std::span<const std::int32_t> blocks, std::span<GammaSample> out) {
-  const float inverse = 1 / grid.cell;
+  const float toGradient = supportRadius / grid.cell;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (blocks[i] < 0) continue;
-    Vec3f at = (points[i].xyz() - grid.origin) * inverse;
+    Vec3f at = (points[i].xyz() - grid.origin) / grid.cell;  // as blockAt() has it, to the last bit
     std::array<int, 3> cell{};
     for (int axis = 0; axis < 3; ++axis) {
       const int whole = static_cast<int>(at[axis]);
@@ -72,7 +72,7 @@ void interpolateBatch(const GammaGrid& grid, float supportRadius, std::span<cons
       cell[static_cast<std::size_t>(axis)] = whole % GammaGrid::kCells;
     }
     interpolateAt(&grid.coefficients[static_cast<std::size_t>(blocks[i]) * GammaGrid::kBlockFloats], at, cell,
-                  supportRadius * inverse, out[i]);
+                  toGradient, out[i]);
   }
 }
 

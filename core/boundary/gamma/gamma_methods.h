@@ -7,6 +7,13 @@
 
 namespace migiwa {
 
+/// A method that has a grid about some of the walls.
+class GridGamma : public GammaMethod {
+ public:
+  /// Whether gamma at p comes from the grid.
+  virtual bool covers(const Vec3f& p) const = 0;
+};
+
 /// gamma of the closest wall alone, as if it were an infinite plane.
 std::unique_ptr<GammaMethod> makeNearestGamma(const GammaContext& context);
 /// [FM] Eq. 14: the Gaussian-weighted mean over the pieces in reach.
@@ -19,8 +26,8 @@ std::unique_ptr<GammaMethod> makeCopulaGamma(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeDirectionsGamma(const GammaContext& context);
 /// A grid of gamma about walls that stand still, made once and kept on disk.
 std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context);
-/// The same, or null where making the grid could take more than a few seconds.
-std::unique_ptr<GammaMethod> makeBakedGammaIfQuick(const GammaContext& context);
+/// The same about the curved walls, or null where making the grid could take more than some seconds.
+std::unique_ptr<GridGamma> makeBakedGammaIfQuick(const GammaContext& context);
 /// The reference: the share of samples of the kernel that lie in the fluid.
 std::unique_ptr<GammaMethod> makeMonteCarloGamma(const GammaContext& context);
 /// Picks among the others at every point, by the shapes in reach.

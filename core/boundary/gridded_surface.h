@@ -1,0 +1,74 @@
+// A wall whose distance is read from a grid: for shapes that take long to say how far they are, such as SLIM
+// surfaces, asked by every particle near them several times a step. Everything else is the shape's own. The
+// cost does not depend on what the shape is made of.
+#pragma once
+
+#include "core/base/parallel.h"
+#include "core/boundary/spline_grid.h"
+#include "core/boundary/surface.h"
+
+namespace migiwa {
+
+class GriddedSurface final : public Surface {
+ public:
+  /// Cells along a support radius, and support radii around the wall that have a grid.
+  static constexpr float kCellsPerSupport = 5, kReach = 1.6F;
+
+  GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool);
+
+  std::shared_ptr<const Surface> exact() const override { return shape_; }
+
+  void describe(FieldVisitor&) override {}  // the scene describes the shape itself
+  /// Within kReach of the wall, that of the splines: off by about 0.001 support radii where the wall is
+  /// smooth and by 0.02 next to creases, which it rounds. Farther out in the fluid no more than kReach, and
+  /// deep in the solid the shape's own.
+  float distance(const Vec3f& p, Vec3f& normal) const override;
+  bool project(Vec3f& p, float margin) const override;
+  void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override {
+    shape_->otherWaysOut(p, margin, out);
+  }
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {
+    shape_->firstHits(origin, directions, hits);
+  }
+  bool reentrant() const override { return shape_->reentrant(); }
+  void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override {
+    shape_->exits(origin, directions, exits);
+  }
+  float thickness() const override { return shape_->thickness(); }
+  bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override {
+    return shape_->crosses(from, to, normal, entry);
+  }
+  bool planar() const override { return shape_->planar(); }
+  PieceRule pieceRule() const override { return shape_->pieceRule(); }
+  void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override {
+    shape_->pieces(p, reach, out);
+  }
+  Bounds bounds() const override { return shape_->bounds(); }
+  void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
+    shape_->wireframe(scene, out);
+  }
+  const BoxGeometry* tank() const override { return shape_->tank(); }
+
+ private:
+  /// Where a point lies in the grid; outside of it in its last block.
+  struct Place {
+    std::size_t block;  ///< among grid_.blocks
+    std::size_t node;   ///< first of those about the cell, in the block
+    Vec3f within;       ///< the cell, in [0, 1)
+  };
+  Place placeOf(const Vec3f& p) const;
+  /// The spline's value and unit gradient, in a block that has coefficients.
+  float interpolate(const Place& place, Vec3f& normal) const;
+
+  std::shared_ptr<const Surface> shape_;
+  SplineGrid<1> grid_;
+  std::vector<float> least_;  ///< distance (m) that every point of a block has
+  float reach_, inverseCell_ = 1;
+};
+
+/// The surfaces, those with costly distances behind grids for this support radius (m). Where a grid would
+/// take too much memory the shape stays as it is.
+std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
+    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool);
+
+}  // namespace migiwa
