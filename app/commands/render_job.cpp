@@ -4,6 +4,7 @@
 #include <set>
 #include <system_error>
 
+#include "app/commands/fault_collector.h"
 #include "app/commands/option_text.h"
 #include "app/ui/number_text.h"
 #include "core/base/error.h"
@@ -39,17 +40,7 @@ void requireFolderName(const std::filesystem::path& folder) {
 }  // namespace
 
 RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& common) {
-  std::vector<Fault> faults;
-  const auto collect = [&](const auto& body) {
-    try {
-      body();
-    } catch (const InputError& error) {
-      for (const Fault& fault : error.faults()) {
-        const auto same = [&](const Fault& known) { return known.text() == fault.text(); };
-        if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
-      }
-    }
-  };
+  FaultCollector collect;
   RenderJob job;
   job.folder = options.out;
   if (!options.times.empty()) {
@@ -80,7 +71,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
     // Not even the option could be read: then the scene itself is still to be looked at.
     if (changes.empty()) addVariant(common.overrides, "");
   }
-  if (!faults.empty()) throw InputError(std::move(faults));
+  collect.raise();
 
   if (job.times.empty()) {
     const double duration = job.variants.front().scene.duration;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "app/commands/command.h"
+#include "app/commands/fault_collector.h"
 #include "core/base/error.h"
 #include "core/io/output_file.h"
 #include "core/slim/slim_file.h"
@@ -27,23 +28,16 @@ struct SlimOptions {
 
 /// What was given, or every fault of it.
 ImportedShape checkedShape(const SlimOptions& options, const CommonOptions& common) {
-  std::vector<Fault> faults;
-  const auto collect = [&](const auto& body) {
-    try {
-      body();
-    } catch (const InputError& error) {
-      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
-    }
-  };
+  FaultCollector collect;
   if (!common.overrides.empty())
-    faults.push_back({"--set", "expected no change of a scene, which this command does not read"});
+    collect.add({"--set", "expected no change of a scene, which this command does not read"});
   if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance <= 1e6))
-    faults.push_back({"--tolerance", "expected a number in (0, 1e+06] (unit: m), found " +
-                                         std::to_string(*options.tolerance)});
+    collect.add({"--tolerance",
+                 "expected a number in (0, 1e+06] (unit: m), found " + std::to_string(*options.tolerance)});
   collect([&] { requireWritable(options.out, "--out"); });
   std::optional<ImportedShape> shape;
   collect([&] { shape = importShape(options.mesh); });
-  if (!faults.empty()) throw InputError(std::move(faults));
+  collect.raise();
   return *std::move(shape);
 }
 

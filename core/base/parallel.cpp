@@ -7,7 +7,7 @@ namespace migiwa {
 
 namespace {
 
-/// Some seventy microseconds: longer than the serial parts of a step, shorter than it takes to be woken twice.
+/// Some seventy microseconds: longer than most serial parts of a step. To be woken takes some twenty.
 constexpr int kLooksBeforeSleep = 2000;
 
 void pause() {

@@ -1,5 +1,5 @@
-// A particle and several of its neighbours at a time: four loads of a float4 each and a transpose, which
-// beats gathers on every processor measured. Compiled once for every instruction set: include after
+// A particle and several of its neighbours at a time: loads of a float4 each and a transpose, in place of
+// gathers. Compiled once for every instruction set: include after
 // <hwy/highway.h>.
 #if defined(MIGIWA_PAIR_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef MIGIWA_PAIR_VECTORS_INL_H

@@ -59,10 +59,7 @@ bool resultsHold() {
   DenseTank tank(10000, 2);
   tank.prepare();
   StepState& state = tank.state();
-  const testing::IndexLists lists(state);
-  testing::ScalarResult scalar;
-  testing::scalarLambda(state, lists, scalar);
-  testing::scalarMove(state, lists, scalar);
+  const testing::ScalarResult scalar = testing::scalarIteration(state);
   stages::movePositions(state);
   float farthest = 0;
   for (std::size_t i = 0; i < scalar.moved.size(); ++i)

@@ -1,6 +1,5 @@
 // The largest error of every method against quadratures that share no code with it (gamma_reference.h), for
-// walls and kernels of all kinds. Run with --gtest_filter=GammaAccuracy.* to see the table that the README
-// quotes.
+// walls and kernels of all kinds. Run it to see the table that the README quotes.
 #include <cstdio>
 #include <random>
 

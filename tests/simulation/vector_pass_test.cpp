@@ -37,10 +37,7 @@ TEST(VectorPasses, AnIterationIsThatOfPlainCode) {
     DenseTank tank(2000, 1);
     tank.prepare();
     StepState& state = tank.state();
-    const testing::IndexLists lists(state);
-    testing::ScalarResult plain;
-    testing::scalarLambda(state, lists, plain);
-    testing::scalarMove(state, lists, plain);
+    const testing::ScalarResult plain = testing::scalarIteration(state);
     const IterationError error = stages::computeLambda(state);
     stages::movePositions(state);
     double sum = 0;

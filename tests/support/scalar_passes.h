@@ -82,4 +82,13 @@ inline void scalarMove(const StepState& state, const IndexLists& lists, ScalarRe
   });
 }
 
+/// Both passes of a first iteration, with all pairs of the state's lists.
+inline ScalarResult scalarIteration(const StepState& state) {
+  const IndexLists lists(state);
+  ScalarResult result;
+  scalarLambda(state, lists, result);
+  scalarMove(state, lists, result);
+  return result;
+}
+
 }  // namespace migiwa::testing
