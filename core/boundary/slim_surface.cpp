@@ -48,9 +48,13 @@ void SlimSurface::describeFit(FieldVisitor& visitor) {
   visitor.integer("degree", source_.degree, Range::closed(1, kLargestSlimDegree),
                   {"1", "Degree of the polynomials."});
   visitor.number("tolerance", source_.tolerance, Range::closed(0, 1e6),
-                 {"m", "Largest distance of a polynomial to the mesh; 0: a thousandth of its diagonal."});
+                 {"m",
+                  "Largest distance of a polynomial to the mesh; 0: a thousandth of its diagonal, or all "
+                  "nodes of a file."});
   visitor.integer("nodes", source_.nodes, Range::closed(0, 5e6),
-                  {"1", "Fits about so many nodes instead; 0: by the tolerance."});
+                  {"1",
+                   "Fits about so many nodes instead, or takes at most so many of a file; 0: by the "
+                   "tolerance."});
   if (visitor.sound({"tolerance", "nodes"}) && source_.tolerance > 0 && source_.nodes > 0)
     visitor.fault("nodes", "expected either tolerance or nodes, found both");
 }
