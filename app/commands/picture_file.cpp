@@ -1,23 +1,17 @@
 #include "app/commands/picture_file.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "app/render/png.h"
+#include "core/base/state_hash.h"
 #include "core/io/output_file.h"
 
 namespace migiwa {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hexDigits(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 /// Sums of steps miss round times by what a double cannot hold.
 double roundedTime(double seconds) {

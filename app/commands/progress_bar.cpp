@@ -24,8 +24,8 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(double until, bool quiet)
-    : until_(until), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(double from, double until, bool quiet)
+    : from_(from), until_(until), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   if (shown_) std::fputs("\r\033[K", stderr);
@@ -37,13 +37,13 @@ void ProgressBar::update(double time) {
   drawn_ = now;
   constexpr int kCells = 30;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double part = until_ > 0 ? std::clamp(time / until_, 0.0, 1.0) : 1;
+  const double part = until_ > from_ ? std::clamp((time - from_) / (until_ - from_), 0.0, 1.0) : 1;
   const int filled = static_cast<int>(part * kCells);
   const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                           std::string(static_cast<std::size_t>(kCells - filled), '.');
   const std::string left = part > 0 ? duration(elapsed * (1 - part) / part) + " left" : "";
   std::fprintf(stderr, "\r[%s] %.2f of %.2f s, %.2f x real time, %s\033[K", bar.c_str(), time, until_,
-               time / elapsed, left.c_str());
+               (time - from_) / elapsed, left.c_str());
   std::fflush(stderr);
 }
 

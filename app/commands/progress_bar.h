@@ -8,9 +8,9 @@ namespace migiwa {
 
 class ProgressBar {
  public:
-  /// `until` is the simulated time (s) at the end. Silent when `quiet`, or when the standard error stream
-  /// goes to a file.
-  ProgressBar(double until, bool quiet);
+  /// `from` and `until` are the simulated times (s) at the start and at the end. Silent when `quiet`, or when
+  /// the standard error stream goes to a file.
+  ProgressBar(double from, double until, bool quiet);
   /// Wipes the line, so that nothing of it stays between the messages around it.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
@@ -22,7 +22,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
 
-  double until_;
+  double from_, until_;
   bool shown_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point drawn_ = start_;

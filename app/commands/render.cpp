@@ -40,7 +40,7 @@ class Drawing {
                   {scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note});
     describe(viewer, scene.view.color);
     {
-      ProgressBar progress(job_.times.back(), common_.quiet);
+      ProgressBar progress(0, job_.times.back(), common_.quiet);
       for (std::size_t i = 0; i < job_.times.size(); ++i) {
         const long frame = simulation.frameAt(job_.times[i]);
         while (simulation.frame() < frame && !simulation.stopped()) {

@@ -1,6 +1,7 @@
 #include "core/base/state_hash.h"
 
 #include <bit>
+#include <cstdio>
 
 namespace migiwa {
 
@@ -38,6 +39,12 @@ std::uint64_t stateHash(std::span<const std::uint32_t> ids, std::span<const Floa
         return sum;
       },
       [](std::uint64_t a, std::uint64_t b) { return a + b; });
+}
+
+std::string hexDigits(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
 }
 
 }  // namespace migiwa

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "core/base/parallel.h"
 #include "core/base/types.h"
@@ -12,5 +13,8 @@ namespace migiwa {
 
 std::uint64_t stateHash(std::span<const std::uint32_t> ids, std::span<const Float4> positions,
                         std::span<const Float4> velocities, ThreadPool& pool);
+
+/// A hash as people read it: 16 hexadecimal digits.
+std::string hexDigits(std::uint64_t hash);
 
 }  // namespace migiwa

@@ -3,8 +3,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <stdexcept>
 #include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 
@@ -35,6 +38,42 @@ fs::path temporaryFor(const fs::path& file) {
   return temporary;
 }
 
+/// A file descriptor that closes itself. Every function leaves its reason in errno.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& file, int how) : descriptor_(::open(file.c_str(), how | O_CLOEXEC, 0666)) {}
+  ~OpenFile() { close(); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  bool isOpen() const { return descriptor_ >= 0; }
+  bool write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t done = ::write(descriptor_, text.data(), text.size());
+      if (done >= 0) {
+        text.remove_prefix(static_cast<std::size_t>(done));
+      } else if (errno != EINTR) {
+        return false;
+      }
+    }
+    return true;
+  }
+  bool sync() const { return ::fsync(descriptor_) == 0; }
+  bool close() {
+    const int descriptor = std::exchange(descriptor_, -1);
+    return descriptor < 0 || ::close(descriptor) == 0;
+  }
+
+ private:
+  int descriptor_;
+};
+
+void syncFolder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const OpenFile opened(folder, O_RDONLY | O_DIRECTORY);
+  if (opened.isOpen()) static_cast<void>(opened.sync());
+}
+
 }  // namespace
 
 void requireWritable(const fs::path& file, std::string_view option) {
@@ -58,19 +97,33 @@ void requireWritable(const fs::path& file, std::string_view option) {
   fs::remove(temporary, code);
 }
 
-void writeTextFile(const fs::path& file, std::string_view text) {
+void writeFile(const fs::path& file, std::span<const std::string_view> pieces, Outlasting outlasting) {
   const bool direct = isStream(file);
   const fs::path target = direct ? file : resolved(file);
   const fs::path written = direct ? file : temporaryFor(target);
-  std::ofstream out(written, direct ? std::ios::binary | std::ios::app : std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code code;
-  if (out && !direct) fs::rename(written, target, code);
-  if (out && !code) return;
+  OpenFile out(written, direct ? O_WRONLY | O_APPEND : O_WRONLY | O_CREAT | O_TRUNC);
+  bool good = out.isOpen();
+  for (const std::string_view piece : pieces) good = good && out.write(piece);
+  if (!direct && outlasting == Outlasting::theMachine) good = good && out.sync();
+  const int reason = errno;
+  good = out.close() && good;
+  std::error_code code(reason, std::generic_category());
+  if (good && !direct) {
+    fs::rename(written, target, code);
+    good = !code;
+  }
+  if (good) {
+    // The new name is on the disk only once its folder is.
+    if (!direct && outlasting == Outlasting::theMachine) syncFolder(target);
+    return;
+  }
   std::error_code ignored;
   if (!direct) fs::remove(written, ignored);
-  throw std::runtime_error(file.string() + ": could not be written" + (code ? ": " + code.message() : ""));
+  throw InputError(file.string(), "could not be written: " + code.message());
+}
+
+void writeTextFile(const fs::path& file, std::string_view text) {
+  writeFile(file, {&text, 1}, Outlasting::theProgram);
 }
 
 }  // namespace migiwa

@@ -1,10 +1,10 @@
 // From what a run counted to what a report says.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <sys/resource.h>
 
+#include "core/base/state_hash.h"
 #include "core/boundary/gamma_method.h"
 #include "core/io/report.h"
 
@@ -32,12 +32,6 @@ Measure milliseconds(Measure seconds) {
 double iterationSeconds(const StageTimes& stages) {
   return stages.seconds("lambda") + stages.seconds("position") + stages.seconds("projection") +
          stages.seconds("gamma_refresh");
-}
-
-std::string hexDigits(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
 }
 
 double peakMemory() {

@@ -2,8 +2,9 @@
 
 namespace migiwa {
 
-Json JsonWriter::write(const Fields& fields) {
+Json JsonWriter::write(const Fields& fields, const FileEntry& fileEntry) {
   JsonWriter writer;
+  writer.fileEntry_ = fileEntry;
   fields(writer);
   return std::move(writer.object_);
 }
@@ -28,6 +29,10 @@ void JsonWriter::text(std::string_view key, std::string& value, const FieldDoc&)
   if (!value.empty()) put(key, value);
 }
 
+void JsonWriter::file(std::string_view key, FileName& value, const FieldDoc&) {
+  if (!value.empty()) put(key, fileEntry_ ? fileEntry_(value) : Json(value.written));
+}
+
 void JsonWriter::vector(std::string_view key, Vec3d& value, const FieldDoc&) {
   put(key, Json::array({value.x(), value.y(), value.z()}));
 }
@@ -48,14 +53,14 @@ void JsonWriter::choice(std::string_view key, int& index, std::span<const std::s
 }
 
 void JsonWriter::object(std::string_view key, const FieldDoc&, const Fields& fields, bool* present) {
-  if (present == nullptr || *present) put(key, write(fields));
+  if (present == nullptr || *present) put(key, write(fields, fileEntry_));
 }
 
 void JsonWriter::list(std::string_view key, std::size_t size, const FieldDoc&,
                       const std::function<void(FieldVisitor&, std::size_t)>& element) {
   Json entries = Json::array();
   for (std::size_t k = 0; k < size; ++k)
-    entries.push_back(write([&](FieldVisitor& fields) { element(fields, k); }));
+    entries.push_back(write([&](FieldVisitor& fields) { element(fields, k); }, fileEntry_));
   put(key, std::move(entries));
 }
 

@@ -9,12 +9,16 @@ namespace migiwa {
 
 class JsonWriter final : public FieldVisitor {
  public:
-  static Json write(const Fields& fields);
+  /// What stands for a file that a scene names.
+  using FileEntry = std::function<Json(const FileName&)>;
+
+  static Json write(const Fields& fields, const FileEntry& fileEntry = {});
 
   void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) override;
   void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) override;
   void boolean(std::string_view key, bool& value, const FieldDoc& doc) override;
   void text(std::string_view key, std::string& value, const FieldDoc& doc) override;
+  void file(std::string_view key, FileName& value, const FieldDoc& doc) override;
   void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override;
   void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
                const FieldDoc& doc) override;
@@ -32,6 +36,7 @@ class JsonWriter final : public FieldVisitor {
   void put(std::string_view key, Json value);
 
   Json object_ = Json::object();
+  FileEntry fileEntry_;
 };
 
 }  // namespace migiwa

@@ -35,6 +35,7 @@ struct FrameView {
   std::span<const float> gamma;
   std::span<const float> lambda;  ///< of the last iteration, times the squared support radius (1)
   std::span<const std::uint32_t> neighbours;
+  std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame; empty in a snapshot
 };
 
 /// A copy of a frame view that owns its data.

@@ -82,18 +82,6 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
   return result;
 }
 
-/// 1st percentile, by linear interpolation between order statistics.
-std::optional<double> firstPercentile(std::vector<float> values) {
-  if (values.empty()) return std::nullopt;
-  const double place = 0.01 * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), values.begin() + low, values.end());
-  const auto a = static_cast<double>(values[static_cast<std::size_t>(low)]);
-  if (static_cast<std::size_t>(low) + 1 == values.size()) return a;
-  const auto b = static_cast<double>(*std::min_element(values.begin() + low + 1, values.end()));
-  return a + (place - static_cast<double>(low)) * (b - a);
-}
-
 }  // namespace
 
 void SettledSampler::sample(const Simulation& simulation) {
@@ -115,7 +103,7 @@ void SettledSampler::sample(const Scene& scene, std::span<const Float4> position
   for (const NearestNeighbour& nearest :
        nearestNeighbours(positions, boundary, static_cast<float>(scene.particleSpacing),
                          static_cast<float>(scene.supportRadius()), pool)) {
-    if (std::isfinite(nearest.distance)) (nearest.nearWall ? nearWall_ : bulk_).push_back(nearest.distance);
+    if (std::isfinite(nearest.distance)) (nearest.nearWall ? nearWall_ : bulk_).add(nearest.distance);
   }
 
   const std::optional<Tank> tank = uprightTank(scene);
@@ -139,8 +127,8 @@ void SettledSampler::sample(const Scene& scene, std::span<const Float4> position
 
 SettledMeasures SettledSampler::result() const {
   SettledMeasures measures;
-  measures.nearWallSpacingP1 = firstPercentile(nearWall_);
-  measures.bulkSpacingP1 = firstPercentile(bulk_);
+  measures.nearWallSpacingP1 = nearWall_.firstPercentile();
+  measures.bulkSpacingP1 = bulk_.firstPercentile();
   if (sums_.frames > 0) measures.rmsSpeed = std::sqrt(sums_.squaredSpeed / sums_.frames);
   if (sums_.boxFrames > 0) {
     measures.height = sums_.height / sums_.boxFrames;
@@ -148,6 +136,23 @@ SettledMeasures SettledSampler::result() const {
     measures.edgeCrowding = sums_.edgeCrowding / sums_.boxFrames;
   }
   return measures;
+}
+
+void SettledSampler::beginRun(long last) {
+  if (last_ != last) *this = SettledSampler();
+  last_ = last;
+}
+
+void SettledSampler::visit(StateVisitor& visitor) {
+  visitor.integer("/settled/last_frame", last_);
+  visitor.integer("/settled/frames", sums_.frames);
+  visitor.integer("/settled/box_frames", sums_.boxFrames);
+  visitor.number("/settled/height", sums_.height);
+  visitor.number("/settled/expected_height", sums_.expectedHeight);
+  visitor.number("/settled/edge_crowding", sums_.edgeCrowding);
+  visitor.number("/settled/squared_speed", sums_.squaredSpeed);
+  nearWall_.visit(visitor, "settled/near_wall");
+  bulk_.visit(visitor, "settled/bulk");
 }
 
 }  // namespace migiwa

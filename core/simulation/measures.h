@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/simulation/simulation.h"
+#include "core/simulation/spacing_histogram.h"
 
 namespace migiwa {
 
@@ -34,12 +35,18 @@ class SettledSampler {
   void sample(const Scene& scene, std::span<const Float4> positions, std::span<const Float4> velocities);
   SettledMeasures result() const;
 
+  /// Samples belong to a run that ends at frame `last`: forgets those of another.
+  void beginRun(long last);
+  /// For a save.
+  void visit(StateVisitor& visitor);
+
  private:
   struct Sums {
     double height = 0, expectedHeight = 0, edgeCrowding = 0, squaredSpeed = 0;
     int boxFrames = 0, frames = 0;
   } sums_;
-  std::vector<float> nearWall_, bulk_;
+  SpacingHistogram nearWall_, bulk_;
+  long last_ = -1;  ///< the run's last frame; negative: no run yet
 };
 
 }  // namespace migiwa

@@ -10,6 +10,7 @@
 #include "core/boundary/gridded_surface.h"
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
+#include "core/simulation/step_memory.h"
 #include "core/solver/pbf_solver.h"
 #include "core/solver/thin_walls.h"
 
@@ -24,6 +25,11 @@ struct Simulation::State {
   }
   void configure();
   void advanceSubstep(float dt);
+  std::uint64_t hash() {
+    return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, pool);
+  }
+  /// What a picture says of the frame, but for wall times.
+  void describeFrame();
 
   Scene scene;
   ThreadPool pool;
@@ -35,6 +41,7 @@ struct Simulation::State {
   Health health;
   HealthLimits limits;
   FrameInfo info;
+  std::vector<std::uint32_t> savedNeighbours;  ///< counts that came with a save, until the next step
   long frame = 0;
   double time = 0;
 };
@@ -97,10 +104,19 @@ Simulation::Simulation(Scene scene, int threads)
 
 Simulation::~Simulation() = default;
 
+void Simulation::State::describeFrame() {
+  info.time = time;
+  info.steps = statistics.steps;
+  info.iterations = step.iterations;
+  info.errors = statistics.steps > 0 ? step.errors : std::vector<IterationError>();
+  info.stateHash = hash();
+}
+
 void Simulation::State::advanceSubstep(float dt) {
   const auto start = std::chrono::steady_clock::now();
   step.timeStep = dt;
   step.gammaFloored = 0;
+  savedNeighbours.clear();
   step.times.clear();
   advanceStep(step, effects);
   step.times.time("check", [&] { health = inspect(step, limits); });
@@ -144,14 +160,9 @@ void Simulation::advanceFrame() {
   ++state.frame;
   state.time += frameStep;
   state.statistics.simulatedSeconds = state.time;
-
-  state.info.time = state.time;
-  state.info.steps = state.statistics.steps;
-  state.info.iterations = state.step.iterations;
-  state.info.errors = state.step.errors;
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
-  state.info.stateHash = stateHash();
+  state.describeFrame();
 }
 
 long Simulation::frameAt(double time) const {
@@ -180,13 +191,19 @@ const Scene& Simulation::scene() const {
 
 FrameView Simulation::view() const {
   const StepState& step = state_->step;
-  return {state_->info, step.particles.position, step.particles.velocity, step.density, step.gamma,
-          step.lambda,  step.neighbours.counts()};
+  const std::span<const std::uint32_t> saved = state_->savedNeighbours;
+  return {state_->info,
+          step.particles.position,
+          step.particles.velocity,
+          step.density,
+          step.gamma,
+          step.lambda,
+          saved.empty() ? step.neighbours.counts() : saved,
+          step.particles.id};
 }
 
 std::uint64_t Simulation::stateHash() const {
-  const StepState& step = state_->step;
-  return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, state_->pool);
+  return state_->hash();
 }
 
 const RunStatistics& Simulation::statistics() const {
@@ -197,6 +214,24 @@ int Simulation::threads() const {
 }
 bool Simulation::stopped() const {
   return state_->statistics.failed();
+}
+
+void Simulation::visitState(StateVisitor& visitor) {
+  State& state = *state_;
+  visitor.integer("/frame", state.frame);
+  visitor.number("/time", state.time);
+  visitor.integer("/iterations", state.step.iterations);
+  visitor.number("/max_speed", state.health.maxSpeed);  // the CFL rule goes by it
+  state.statistics.visit(visitor);
+  std::vector<std::uint32_t> neighbours;
+  if (!visitor.reading()) {
+    const std::span<const std::uint32_t> counts = view().neighbours;
+    neighbours.assign(counts.begin(), counts.end());
+  }
+  visitStepMemory(visitor, state.step, neighbours);
+  if (!visitor.reading()) return;
+  state.savedNeighbours = std::move(neighbours);
+  state.describeFrame();
 }
 
 std::vector<LineSegment> Simulation::wireframe() const {

@@ -11,6 +11,8 @@
 
 namespace migiwa {
 
+class StateVisitor;
+
 /// What may change between two steps of a running simulation.
 struct Settings {
   SolverParameters solver;
@@ -45,6 +47,10 @@ class Simulation {
   int threads() const;
   /// True after a non-finite state or a lost particle; advanceFrame then does nothing more.
   bool stopped() const;
+  /// For a save: all that the future depends on, and what the report and a picture say of the past. Reading
+  /// takes a simulation of the same scene; throws StateError when what is read does not fit, and is then of
+  /// no further use.
+  void visitState(StateVisitor& visitor);
   /// Walls for drawing.
   std::vector<LineSegment> wireframe() const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/simulation/health.h"
+#include "core/simulation/state_visitor.h"
 
 namespace migiwa {
 
@@ -50,6 +51,42 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
     note("lost_particle", steps,
          std::to_string(health.lost) + " particles left the scene, particle " +
              std::to_string(health.firstBad) + " among them");
+  }
+}
+
+void RunStatistics::visit(StateVisitor& visitor) {
+  visitor.integer("/statistics/steps", steps);
+  visitor.number("/statistics/simulated_s", simulatedSeconds);
+  visitor.number("/statistics/wall_s", wallSeconds);
+  visitor.number("/statistics/iterations/sum", iterationSum);
+  visitor.integer("/statistics/iterations/max", iterationMax);
+  visitor.number("/statistics/density_error/sum", densityErrorSum);
+  visitor.number("/statistics/density_error/max", densityErrorMax);
+  visitor.number("/statistics/max_penetration", maxPenetration);
+  visitor.number("/statistics/max_speed", maxSpeed);
+  visitor.array("statistics/step_seconds", stepSeconds);
+
+  std::vector<StageTime> times = stages.stages();
+  auto count = static_cast<std::int64_t>(times.size());
+  visitor.integer("/statistics/stages", count);
+  times.resize(static_cast<std::size_t>(count));
+  stages.clear();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::string place = "/stage_" + std::to_string(k);
+    visitor.text(place + "/name", times[k].name);
+    visitor.number(place + "/seconds", times[k].seconds);
+    stages.add(times[k].name, times[k].seconds);
+  }
+
+  count = static_cast<std::int64_t>(trouble.size());
+  visitor.integer("/statistics/troubles", count);
+  trouble.resize(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < trouble.size(); ++k) {
+    const std::string place = "/trouble_" + std::to_string(k);
+    visitor.text(place + "/kind", trouble[k].kind);
+    visitor.integer(place + "/step", trouble[k].step);
+    visitor.integer(place + "/count", trouble[k].count);
+    visitor.text(place + "/detail", trouble[k].detail);
   }
 }
 

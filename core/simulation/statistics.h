@@ -9,6 +9,7 @@
 
 namespace migiwa {
 
+class StateVisitor;
 struct Health;
 struct StepState;
 
@@ -41,6 +42,8 @@ struct RunStatistics {
   void note(const std::string& kind, long step, const std::string& detail);
   /// Takes in a finished substep of `dt` (s) that took `seconds` of wall time.
   void record(const StepState& state, const Health& health, double dt, double seconds);
+  /// All of it for a save, but for gammaPicked and gammaReason, which follow from the scene.
+  void visit(StateVisitor& visitor);
   /// Non-finite state or lost particles: exit code 3.
   bool failed() const { return lostParticles > 0 || nonfiniteParticles > 0; }
 };

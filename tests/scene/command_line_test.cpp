@@ -1,15 +1,15 @@
 // The program as a user starts it: exit codes, where messages go, and that a refused run writes nothing.
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
+#include "tests/support/program.h"
+
+namespace migiwa::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,48 +17,7 @@ namespace fs = std::filesystem;
 const std::string kScenes = MIGIWA_SOURCE_DIR "/scenes/";
 const std::string kBad = MIGIWA_SOURCE_DIR "/tests/scene/bad/";
 
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string readAll(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-/// In single quotes, so that the shell passes it on as it is.
-std::string shellQuoted(const std::string& word) {
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-class CommandLine : public testing::Test {
- protected:
-  void SetUp() override {
-    base_ = fs::path(testing::TempDir()) / (std::string("migiwa_command_line_") +
-                                            testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(base_);
-    folder_ = base_ / "work";
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
-  /// Runs the program in an empty folder of its own.
-  Outcome run(const std::vector<std::string>& arguments) const {
-    std::string command = "cd " + shellQuoted(folder_.string()) + " && " + shellQuoted(MIGIWA_PROGRAM);
-    for (const std::string& argument : arguments) command += " " + shellQuoted(argument);
-    command += " >" + shellQuoted((base_ / "out").string()) + " 2>" + shellQuoted((base_ / "err").string());
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(base_ / "out"), readAll(base_ / "err")};
-  }
-
-  bool folderIsEmpty() const { return fs::is_empty(folder_); }
-
-  fs::path base_, folder_;
-};
+using CommandLine = ProgramTest;
 
 std::size_t lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -265,3 +224,4 @@ TEST_F(CommandLine, SummaryRefusesWhatIsNoReport) {
 }
 
 }  // namespace
+}  // namespace migiwa::testing

@@ -4,13 +4,14 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <type_traits>
 #include <typeinfo>
 
 #include <unistd.h>
+
+#include "core/base/checksum.h"
 
 namespace migiwa {
 
@@ -103,20 +104,8 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80);
 
-/// FNV-1a over words of eight bytes, the rest filled up with zeros.
-std::uint64_t checksum(std::uint64_t sum, const void* data, std::size_t bytes) {
-  const auto* at = static_cast<const char*>(data);
-  for (std::size_t k = 0; k < bytes; k += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, at + k, std::min<std::size_t>(8, bytes - k));
-    sum = (sum ^ word) * 0x100000001B3U;
-    sum ^= sum >> 29;
-  }
-  return sum;
-}
-
 std::uint64_t checksumOf(const std::string& key, const GammaGrid& grid) {
-  std::uint64_t sum = checksum(0xCBF29CE484222325U, key.data(), key.size());
+  std::uint64_t sum = checksum(kEmptyChecksum, key.data(), key.size());
   const std::array<float, 4> place{grid.origin.x(), grid.origin.y(), grid.origin.z(), grid.cell};
   sum = checksum(sum, place.data(), sizeof place);
   sum = checksum(sum, grid.size.data(), sizeof grid.size);
@@ -157,7 +146,7 @@ fs::path cacheFolder() {
 fs::path gridFile(const fs::path& folder, const std::string& key) {
   char name[32];
   std::snprintf(name, sizeof name, "gamma_%016llx.grid",
-                static_cast<unsigned long long>(checksum(0xCBF29CE484222325U, key.data(), key.size())));
+                static_cast<unsigned long long>(checksum(kEmptyChecksum, key.data(), key.size())));
   return folder / name;
 }
 
