@@ -8,6 +8,8 @@ namespace migiwa {
 void simulationPanel(PanelModel& model);
 void boundaryPanel(PanelModel& model);
 void solverPanel(PanelModel& model);
+/// Of one effect among the settings'.
+void effectPanel(PanelModel& model, NamedEffect& effect);
 void viewPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
 

@@ -11,6 +11,7 @@
 #include "app/ui/legend.h"
 #include "app/ui/panels.h"
 #include "app/ui/theme.h"
+#include "app/ui/widgets.h"
 
 namespace migiwa {
 namespace {
@@ -57,7 +58,8 @@ void feed(ImGuiIO& io, const InputState& input) {
 }
 
 /// A heading that folds; open at first where the picture is high enough for what comes with it.
-void section(const char* title, bool open, ImFont* bold, PanelModel& model, void (*panel)(PanelModel&)) {
+template <class Panel>
+void section(const char* title, bool open, ImFont* bold, PanelModel& model, const Panel& panel) {
   ImGui::PushFont(bold);
   const bool shown = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   ImGui::PopFont();
@@ -117,6 +119,10 @@ void Ui::panels(PanelModel& model, int height) {
   section("Simulation", true, bold, model, simulationPanel);
   section("Boundary", true, bold, model, boundaryPanel);
   section("Solver", lines > 26, bold, model, solverPanel);
+  for (NamedEffect& effect : model.settings.effects) {
+    section(titleOf(effect.name).c_str(), lines > 40, bold, model,
+            [&](PanelModel& whole) { effectPanel(whole, effect); });
+  }
   section("View", lines > 33, bold, model, viewPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
   ImGui::End();

@@ -1,8 +1,16 @@
 #include "app/ui/widgets.h"
 
-#include <string>
+#include <algorithm>
+#include <cctype>
 
 namespace migiwa {
+
+std::string titleOf(std::string_view key) {
+  std::string title(key);
+  std::replace(title.begin(), title.end(), '_', ' ');
+  if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
 
 void rowLabel(const char* label) {
   ImGui::AlignTextToFramePadding();

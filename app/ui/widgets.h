@@ -2,12 +2,15 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <imgui.h>
 
 namespace migiwa {
 
+/// A scene key as a label: "surface_tension" is "Surface tension".
+std::string titleOf(std::string_view key);
 /// A label in the left column; the next widget fills the right one.
 void rowLabel(const char* label);
 /// A drop-down list over names; returns whether `index` changed.

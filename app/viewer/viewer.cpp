@@ -37,7 +37,7 @@ Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerO
       options_(options),
       bounds_(scene.bounds()),
       referenceSpeed_(referenceSpeed(scene)),
-      settings_{scene.solver, scene.boundary},
+      settings_{scene.solver, scene.boundary, scene.effects},
       view_{scene.view.camera, scene.view.clip, scene.view.color, true, options.panels},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
       ui_(options.scale) {

@@ -14,6 +14,10 @@ struct Entry {
 
 constexpr std::array kEffects{
     Entry{"viscosity", makeViscosity},
+    Entry{"vorticity_confinement", makeVorticityConfinement},
+    Entry{"surface_tension", makeSurfaceTension},
+    Entry{"artificial_pressure", makeArtificialPressure},
+    Entry{"wall_friction", makeWallFriction},
 };
 
 }  // namespace

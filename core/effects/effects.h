@@ -8,5 +8,9 @@
 namespace migiwa {
 
 std::unique_ptr<Effect> makeViscosity();
+std::unique_ptr<Effect> makeVorticityConfinement();
+std::unique_ptr<Effect> makeSurfaceTension();
+std::unique_ptr<Effect> makeArtificialPressure();
+std::unique_ptr<Effect> makeWallFriction();
 
 }  // namespace migiwa

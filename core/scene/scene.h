@@ -42,11 +42,6 @@ struct View {
       0, 1};  ///< ends of the colour map, in the field's unit; used if hasColorRange
 };
 
-struct NamedEffect {
-  std::string name;
-  std::shared_ptr<const Effect> effect;
-};
-
 struct Scene {
   std::filesystem::path file;  ///< where it was read from
   std::string name;

@@ -36,7 +36,7 @@ struct Simulation::State {
   Boundary boundary;
   StepState step;
   PickedGamma gamma;
-  std::vector<EffectStage> effects;
+  EffectPipeline effects;
   RunStatistics statistics;
   Health health;
   HealthLimits limits;
@@ -79,6 +79,7 @@ void Simulation::State::configure() {
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();
   step.wallSlot.clear();
+  effects = EffectPipeline(scene.effects);
   info.spacing = step.spacing;
   info.supportRadius = step.supportRadius;
   limits = healthLimits(scene);
@@ -88,7 +89,6 @@ Simulation::Simulation(Scene scene, int threads)
     : state_(std::make_unique<State>(std::move(scene), threads)) {
   State& state = *state_;
   fillScene(state.scene, state.boundary, state.step.particles);
-  for (const NamedEffect& effect : state.scene.effects) state.effects.push_back({effect.name, effect.effect});
   state.configure();
   if (const long inside = stabilise(state.step); inside > 0) {
     state.statistics.note("started_in_wall", 0,
@@ -176,12 +176,13 @@ double Simulation::time() const {
 }
 
 Settings Simulation::settings() const {
-  return {state_->scene.solver, state_->scene.boundary};
+  return {state_->scene.solver, state_->scene.boundary, state_->scene.effects};
 }
 
 void Simulation::apply(const Settings& settings) {
   state_->scene.solver = settings.solver;
   state_->scene.boundary = settings.boundary;
+  state_->scene.effects = settings.effects;
   state_->configure();
 }
 

@@ -17,6 +17,7 @@ class StateVisitor;
 struct Settings {
   SolverParameters solver;
   BoundaryParameters boundary;
+  std::vector<NamedEffect> effects;
 };
 
 class Simulation {

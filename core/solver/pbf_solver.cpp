@@ -20,10 +20,11 @@ void takePositions(StepState& state) {
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
 /// stay.
-void solveConstraint(StepState& state) {
+void solveConstraint(StepState& state, EffectPipeline& effects) {
   const SolverParameters& parameters = state.parameters;
   state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
   if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
+  effects.changePrediction(state);
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
   state.errors.clear();
   state.iterations = 0;
@@ -36,6 +37,7 @@ void solveConstraint(StepState& state) {
     const bool stretch = parameters.acceleration == Acceleration::chebyshev;
     const float weight = stretch ? chebyshev.next(state.errors, parameters.tolerance) : 1;
     state.times.time("position", [&] { stages::movePositions(state, weight); });
+    effects.changePositions(state, weight);
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });
       if (state.gammaMethod != nullptr)
@@ -47,14 +49,14 @@ void solveConstraint(StepState& state) {
 
 }  // namespace
 
-void advanceStep(StepState& state, const std::vector<EffectStage>& effects) {
+void advanceStep(StepState& state, EffectPipeline& effects) {
   state.times.time("predict", [&] { stages::predict(state); });
-  solveConstraint(state);
+  solveConstraint(state, effects);
   state.times.time("velocity", [&] {
     stages::projectAll(state);
     stages::updateVelocities(state);
   });
-  for (const EffectStage& stage : effects) state.times.time(stage.name, [&] { stage.effect->apply(state); });
+  effects.changeVelocities(state);
 }
 
 long stabilise(StepState& state) {
@@ -79,10 +81,11 @@ long stabilise(StepState& state) {
   // of a resting lattice reads some percent by itself. Neighbours change on the way, hence several solves.
   constexpr double kCalm = 0.04;
   constexpr int kMostSolves = 30;
+  EffectPipeline none;
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
-    solveConstraint(state);
+    solveConstraint(state, none);
     stages::projectAll(state);
     stages::acceptPositions(state);
     if (state.errors.back().max <= kCalm) break;

@@ -2,23 +2,13 @@
 // stages.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "core/effects/effect.h"
+#include "core/solver/effect_pipeline.h"
 #include "core/solver/step_state.h"
 
 namespace migiwa {
 
-/// An effect under the name that the scene gives it: its stage.
-struct EffectStage {
-  std::string name;
-  std::shared_ptr<const Effect> effect;
-};
-
-/// Advances the state by `state.timeStep`.
-void advanceStep(StepState& state, const std::vector<EffectStage>& effects);
+/// Advances the state by `state.timeStep`, with what the effects add.
+void advanceStep(StepState& state, EffectPipeline& effects);
 
 /// For fluid that starts inside walls: projects it out and solves the density on the positions alone, so that
 /// the push does not become speed. Returns how many particles were inside; 0: nothing was done.

@@ -30,13 +30,13 @@ using testing::DenseTank;
 /// Floating-point operations a pair, counted in the source.
 constexpr double kLambdaFlops = 34, kPositionFlops = 28;
 
-std::vector<EffectStage> viscosity() {
-  return {{"viscosity", std::shared_ptr<const Effect>(makeEffect(0))}};
+EffectPipeline viscosity() {
+  return EffectPipeline({{"viscosity", std::shared_ptr<const Effect>(makeEffect(0))}});
 }
 
 std::uint64_t hashAfterSteps(std::size_t n, int threads, int steps) {
   DenseTank tank(n, threads);
-  const auto effects = viscosity();
+  EffectPipeline effects = viscosity();
   for (int k = 0; k < steps; ++k) advanceStep(tank.state(), effects);
   const Particles& particles = tank.state().particles;
   return stateHash(particles.id, particles.position, particles.velocity, tank.state().pool);
@@ -165,7 +165,7 @@ Pass scalarIteration(StepState& state) {
 }
 
 Pass step(StepState& state) {
-  return [&state, effects = viscosity()] { advanceStep(state, effects); };
+  return [&state, effects = viscosity()]() mutable { advanceStep(state, effects); };
 }
 
 void registerAll() {

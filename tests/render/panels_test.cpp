@@ -3,14 +3,16 @@
 
 #include "app/platform/egl_context.h"
 #include "app/viewer/viewer.h"
+#include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
+#include "tests/support/test_effects.h"
 
 namespace migiwa {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 720;
 
-class PanelsTest : public testing::Test {
+class PanelsTest : public ::testing::Test {
  protected:
   Wishes frame(const InputState& input) { return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight); }
 
@@ -74,6 +76,36 @@ TEST_F(PanelsTest, MaxIterationsFollowTheirSlider) {
   EXPECT_TRUE(click(300, 224).settings);
   EXPECT_GT(viewer_.settings().solver.maxIterations, before);
   EXPECT_GE(viewer_.settings().solver.maxIterations, viewer_.settings().solver.minIterations);
+}
+
+TEST(EffectPanels, AreThereForTheEffectsOfTheSceneAndChangeThem) {
+  const auto context = makeEglContext();
+  const FrameSnapshot snapshot = frameOf({Vec3f(0.5F, 0.4F, 0.25F)}, 0.1F);
+  Scene scene = smallScene();
+  const auto panels = [&] {
+    Viewer viewer(scene, {}, {1, true, true});
+    return viewer.takePicture(snapshot.view(), RunStatus{}, kWidth, 1400);
+  };
+  scene.effects.clear();
+  const Image none = panels();
+  scene.effects = testing::effectsOf(R"({"wall_friction": {}, "artificial_pressure": {}})");
+  EXPECT_GT(differentShare(none, panels()), 0.01);
+
+  // Somewhere in the right half of the panels lies a slider of an effect: pressed, it puts another effect in
+  // the place of the scene's. Each try begins anew, for a press on a heading folds it.
+  bool changed = false;
+  for (float y = 300; y < 1000 && !changed; y += 12) {
+    Viewer viewer(scene, {}, {1, true, true});
+    for (const bool pressed : {false, true, true, false}) {
+      InputState input;
+      input.mouseInside = true;
+      input.mouseX = 280, input.mouseY = y;
+      input.buttons[0] = pressed;
+      const Wishes wishes = viewer.frame(snapshot.view(), RunStatus{}, input, kWidth, 1400);
+      changed |= wishes.settings && viewer.settings().effects[0].effect != scene.effects[0].effect;
+    }
+  }
+  EXPECT_TRUE(changed);
 }
 
 TEST_F(PanelsTest, DraggingTheSceneTurnsTheCameraAndThePanelsDoNot) {

@@ -58,8 +58,7 @@ std::vector<std::pair<Vec3f, Vec3f>> afterAStep() {
   StepState& state = tank.state();
   // The number of iterations must not hang on rounding.
   state.parameters.minIterations = state.parameters.maxIterations = 4;
-  std::vector<EffectStage> effects(1);
-  effects.front() = {"viscosity", std::shared_ptr<const Effect>(makeEffect(0))};
+  EffectPipeline effects({{"viscosity", std::shared_ptr<const Effect>(makeEffect(0))}});
   advanceStep(state, effects);
   std::vector<std::pair<Vec3f, Vec3f>> result(state.particles.size());
   for (std::size_t i = 0; i < result.size(); ++i)

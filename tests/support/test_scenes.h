@@ -6,6 +6,7 @@
 #include "core/boundary/box.h"
 #include "core/scene/box_source.h"
 #include "core/scene/scene.h"
+#include "tests/support/test_effects.h"
 
 namespace migiwa::testing {
 
@@ -33,7 +34,7 @@ inline void addTank(Scene& scene, const Vec3d& min, const Vec3d& max, const Rota
 }
 
 inline void addViscosity(Scene& scene) {
-  scene.effects.push_back({"viscosity", std::shared_ptr<const Effect>(makeEffect(0))});
+  scene.effects = effectsOf(R"({"viscosity": {}})");
 }
 
 /// A tank filled with cells[0] x cells[1] x cells[2] particles from its floor, in rest, under gravity.

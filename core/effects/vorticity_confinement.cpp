@@ -1,0 +1,208 @@
+// Vorticity confinement (Fedkiw, Stam & Jensen 2001, Macklin & Mueller 2013 Eqs. 15 and 16): the swirl that
+// the solver smooths away is put back by a force about the places of largest vorticity w = curl v,
+// a = strength h (N x w), N = grad |w| / |grad |w||. Deviations: gradients are taken from differences to the
+// neighbours and measured by those of the resting lattice; and the net force and torque on all of the fluid
+// are taken out as a motion of a rigid body, so that momentum and angular momentum stay what they are.
+#include <Eigen/QR>
+
+#include "core/effects/effects.h"
+#include "core/solver/step_state.h"
+#include "core/sph/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/effects/vorticity_confinement.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "core/solver/pair_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace migiwa::HWY_NAMESPACE {
+
+/// w (xyz) and its length (w) from the velocities in `velocities`, which end with the ghost's; the gradient
+/// of a linear field comes out of the sums times `scale`.
+template <class Kernel>
+void curlRange(const StepState& state, const Float4* velocities, Float4* out, float scale, std::size_t begin,
+               std::size_t end) {
+  const Pairs d;
+  const PairScale pairScale(state);
+  const Float4* const positions = state.current.data();
+  for (std::size_t i = begin; i < end; ++i) {
+    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+    const Float4 own = velocities[i];
+    const PairVector vx = hn::Set(d, own.x), vy = hn::Set(d, own.y), vz = hn::Set(d, own.z);
+    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    for (std::size_t k = 0; k < list.size(); k += kPairs) {
+      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const PairVector slope =
+          KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, distances(d, pair.squared));
+      const Components others = loadComponents(velocities, &list[k]);
+      const PairVector ux = hn::Mul(slope, hn::Sub(others.x, vx)), uy = hn::Mul(slope, hn::Sub(others.y, vy)),
+                       uz = hn::Mul(slope, hn::Sub(others.z, vz));
+      x = hn::Add(x, hn::Sub(hn::Mul(pair.y, uz), hn::Mul(pair.z, uy)));
+      y = hn::Add(y, hn::Sub(hn::Mul(pair.z, ux), hn::Mul(pair.x, uz)));
+      z = hn::Add(z, hn::Sub(hn::Mul(pair.x, uy), hn::Mul(pair.y, ux)));
+    }
+    const Vec3f curl = scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
+    out[i] = Float4(curl, curl.norm());
+  }
+}
+
+/// N x w of the vorticities, which end with the ghost's.
+template <class Kernel>
+void confineRange(const StepState& state, const Float4* vorticity, Float4* out, float scale,
+                  std::size_t begin, std::size_t end) {
+  // A gradient that is a small part of w over the support radius has no direction to speak of.
+  constexpr float kFlat = 0.05F;
+  const Pairs d;
+  const PairScale pairScale(state);
+  const Float4* const positions = state.current.data();
+  for (std::size_t i = begin; i < end; ++i) {
+    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+    const PairVector own = hn::Set(d, vorticity[i].w);
+    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    for (std::size_t k = 0; k < list.size(); k += kPairs) {
+      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const PairVector slope =
+          KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, distances(d, pair.squared));
+      const PairVector rise = hn::Mul(slope, hn::Sub(loadComponents(vorticity, &list[k]).w, own));
+      x = hn::MulAdd(rise, pair.x, x), y = hn::MulAdd(rise, pair.y, y), z = hn::MulAdd(rise, pair.z, z);
+    }
+    const Vec3f gradient = scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
+    const float least = kFlat * vorticity[i].w * pairScale.inverseSupport;
+    const float length = gradient.norm() + least;
+    out[i] = length > 0 ? Float4(Vec3f(gradient.cross(vorticity[i].xyz()) / length)) : Float4();
+  }
+}
+
+void curlOfRange(const StepState& state, const Float4* velocities, Float4* out, float scale,
+                 std::size_t begin, std::size_t end) {
+  withKernel(state.parameters.kernel, [&](auto kernel) HWY_ATTR {
+    curlRange<decltype(kernel)>(state, velocities, out, scale, begin, end);
+  });
+}
+
+void confineOfRange(const StepState& state, const Float4* vorticity, Float4* out, float scale,
+                    std::size_t begin, std::size_t end) {
+  withKernel(state.parameters.kernel, [&](auto kernel) HWY_ATTR {
+    confineRange<decltype(kernel)>(state, vorticity, out, scale, begin, end);
+  });
+}
+
+}  // namespace migiwa::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace migiwa {
+
+HWY_EXPORT(curlOfRange);
+HWY_EXPORT(confineOfRange);
+
+namespace {
+
+/// Sums over all particles, about the origin.
+struct Moments {
+  Vec3d place = Vec3d::Zero(), force = Vec3d::Zero(), torque = Vec3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  ///< of places, as outer products
+
+  Moments& operator+=(const Moments& other) {
+    place += other.place, force += other.force, torque += other.torque, squares += other.squares;
+    return *this;
+  }
+};
+
+Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
+/// Takes from the accelerations those of a rigid body with the same net force and torque.
+void removeNetMotion(const StepState& state, std::vector<Float4>& accelerations) {
+  const std::size_t n = state.particles.size();
+  Moments sums = parallelReduce(
+      state.pool, n, Moments{},
+      [&](std::size_t begin, std::size_t end) {
+        Moments part;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Vec3d x = state.current[i].xyz().cast<double>(), a = accelerations[i].xyz().cast<double>();
+          part.place += x, part.force += a, part.torque += cross(x, a), part.squares += x * x.transpose();
+        }
+        return part;
+      },
+      [](Moments a, const Moments& b) { return a += b; });
+  const double count = static_cast<double>(n);
+  const Vec3d centre = sums.place / count, mean = sums.force / count;
+  const Vec3d torque = sums.torque - cross(centre, sums.force);
+  const Eigen::Matrix3d spread = sums.squares - count * centre * centre.transpose();
+  const Eigen::Matrix3d inertia = spread.trace() * Eigen::Matrix3d::Identity() - spread;
+  // Particles in a line do not resist a turn about it.
+  const Vec3d turn = inertia.completeOrthogonalDecomposition().solve(torque);
+  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3d net = mean + cross(turn, state.current[i].xyz().cast<double>() - centre);
+      accelerations[i].setXyz(accelerations[i].xyz() - net.cast<float>());
+    }
+  });
+}
+
+class VorticityConfinement final : public Effect {
+ public:
+  void describe(FieldVisitor& visitor) override {
+    visitor.number("strength", strength_, Range::closed(0, 100),
+                   {"1/s", "Rate at which velocity differences across a support radius are fed."});
+  }
+  std::unique_ptr<Effect> clone() const override { return std::make_unique<VorticityConfinement>(*this); }
+  EffectStages stages() const override { return {.velocity = strength_ > 0}; }
+
+  void changeVelocities(StepState& state, std::span<EffectBuffer>) const override {
+    const std::size_t n = state.particles.size();
+    if (n == 0) return;
+    const double slopes = withKernel(state.parameters.kernel, [&](auto kernel) {
+      return latticeSum(state.parameters.supportRatio, [](double q) {
+        return q * static_cast<double>(PairKernel<decltype(kernel)>::derivative(static_cast<float>(q)));
+      });
+    });
+    const float scale = static_cast<float>(-3 / slopes) / (state.supportRadius * state.supportRadius);
+    std::vector<Float4>& velocities = state.paired;
+    std::vector<Float4>& vorticity = state.previous;
+    resizeTight(velocities, n + 1);
+    resizeTight(vorticity, n + 1);
+    velocities[n] = vorticity[n] = Float4();
+    const auto each = [&](const auto& body) {
+      parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) { body(begin, end); });
+    };
+    each([&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) velocities[i] = state.particles.velocity[i];
+    });
+    const auto curl = HWY_DYNAMIC_DISPATCH(curlOfRange);
+    each([&](std::size_t begin, std::size_t end) {
+      curl(state, velocities.data(), vorticity.data(), scale, begin, end);
+    });
+    std::vector<Float4>& directions = state.paired;
+    const auto confine = HWY_DYNAMIC_DISPATCH(confineOfRange);
+    each([&](std::size_t begin, std::size_t end) {
+      confine(state, vorticity.data(), directions.data(), scale, begin, end);
+    });
+    removeNetMotion(state, directions);
+    const float gain = state.timeStep * static_cast<float>(strength_) * state.supportRadius;
+    each([&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Float4& velocity = state.particles.velocity[i];
+        velocity.setXyz(velocity.xyz() + gain * directions[i].xyz());
+      }
+    });
+  }
+
+ private:
+  double strength_ = 2;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> makeVorticityConfinement() {
+  return std::make_unique<VorticityConfinement>();
+}
+
+}  // namespace migiwa
+#endif  // HWY_ONCE
