@@ -61,7 +61,7 @@ void savePicture(const Image& image) {
 int view(const ViewOptions& options, const CommonOptions& common) {
   const Scene scene =
       readScene(options.scene.empty() ? defaultScene() : fs::path(options.scene), common.overrides);
-  runWindow(scene, {common.threads, !options.paused, options.frames, savePicture});
+  runWindow(scene, {common.threads, common.overrides, !options.paused, options.frames, savePicture});
   return kDone;
 }
 
@@ -82,6 +82,7 @@ Command viewCommand() {
             "Keys: space plays and pauses, right arrow steps, R resets, C corrects or not, H hides the "
             "panels,\n"
             "P saves a picture here as migiwa_0001.png and so on.\n"
+            "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
             "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there.");
         return [options](const CommonOptions& common) { return view(*options, common); };
       }};

@@ -28,7 +28,8 @@ ImFont* load(const char* name, float pixels) {
 }  // namespace
 
 Fonts loadFonts(float pixels) {
-  return {load("DejaVuSans.ttf", pixels), load("DejaVuSans-Bold.ttf", pixels)};
+  return {load("DejaVuSans.ttf", pixels), load("DejaVuSans-Bold.ttf", pixels),
+          load("DejaVuSansMono.ttf", pixels)};
 }
 
 }  // namespace migiwa

@@ -8,6 +8,7 @@ namespace migiwa {
 struct Fonts {
   ImFont* regular = nullptr;
   ImFont* bold = nullptr;
+  ImFont* mono = nullptr;
 };
 
 /// Adds them to the current ImGui context's atlas. Throws MissingError with the package to install.

@@ -11,6 +11,8 @@
 
 namespace migiwa {
 
+struct SceneEditor;
+
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
   bool playing = false;
@@ -43,6 +45,7 @@ struct PanelModel {
   Settings& settings;
   ViewState& view;
   Wishes& wishes;
+  SceneEditor* editor;  ///< null: the scene's text is not offered
 };
 
 }  // namespace migiwa

@@ -5,6 +5,8 @@
 
 namespace migiwa {
 
+/// Needs the model's editor.
+void scenePanel(PanelModel& model);
 void simulationPanel(PanelModel& model);
 void boundaryPanel(PanelModel& model);
 void solverPanel(PanelModel& model);

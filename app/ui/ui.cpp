@@ -10,6 +10,7 @@
 #include "app/ui/fonts.h"
 #include "app/ui/legend.h"
 #include "app/ui/panels.h"
+#include "app/ui/scene_editor.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
 
@@ -116,6 +117,7 @@ void Ui::panels(PanelModel& model, int height) {
   ImGui::Begin("Panels", nullptr, kFixed | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   const float lines = static_cast<float>(height) / state_->pixels;
   ImFont* bold = state_->fonts.bold;
+  if (model.editor != nullptr) section("Scene", true, bold, model, scenePanel);
   section("Simulation", true, bold, model, simulationPanel);
   section("Boundary", true, bold, model, boundaryPanel);
   section("Solver", lines > 26, bold, model, solverPanel);
@@ -126,6 +128,10 @@ void Ui::panels(PanelModel& model, int height) {
   section("View", lines > 33, bold, model, viewPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
   ImGui::End();
+}
+
+void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
+  sceneEditorWindow(editor, area, state_->fonts);
 }
 
 void Ui::caption(const Caption& caption, const Rect& area) const {

@@ -26,6 +26,7 @@ class Ui {
 
   void begin(int width, int height, const InputState& input);
   void panels(PanelModel& model, int height);
+  void sceneEditor(SceneEditor& editor, const Rect& area) const;
   void caption(const Caption& caption, const Rect& area) const;
   void legend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
               const Rect& area) const;

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "app/ui/number_text.h"
+#include "app/ui/scene_editor.h"
 #include "app/viewer/camera_control.h"
 #include "app/viewer/reference_speed.h"
 
@@ -41,8 +42,27 @@ Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerO
       view_{scene.view.camera, scene.view.clip, scene.view.color, true, options.panels},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
       ui_(options.scale) {
+  takeView();
+}
+
+void Viewer::takeView() {
+  view_.camera = scene_.view.camera;
+  view_.clip = scene_.view.clip;
+  view_.color = scene_.view.color;
   // A cut that is switched on later begins in the middle.
   if (!view_.clip.enabled) view_.clip.at = bounds_.center()[static_cast<Eigen::Index>(view_.clip.axis)];
+}
+
+void Viewer::replaceScene(const Scene& scene, std::optional<std::vector<LineSegment>> walls) {
+  const bool viewChanged = !(scene.view == scene_.view);
+  scene_ = scene;
+  settings_ = {scene.solver, scene.boundary};
+  if (walls) {
+    bounds_ = scene.bounds();
+    referenceSpeed_ = referenceSpeed(scene);
+    renderer_ = Renderer(surroundings(scene, *std::move(walls)), options_.colors);
+  }
+  if (viewChanged) takeView();
 }
 
 Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
@@ -85,8 +105,10 @@ Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& 
   ui_.caption(caption(frame, run), area);
   ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
   if (view_.panels) {
-    PanelModel model{frame.info, run, options_.timings, scene_, bounds_, settings_, view_, wishes};
+    PanelModel model{frame.info, run,   options_.timings, scene_,         bounds_,
+                     settings_,  view_, wishes,           options_.editor};
     ui_.panels(model, area.height);
+    if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
   return wishes;
 }

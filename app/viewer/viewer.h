@@ -19,6 +19,8 @@ struct ViewerOptions {
   bool timings = true;  ///< show wall times, which differ from run to run
   std::string note{};   ///< an extra line for the caption, "label = value"
   ColorMap colors = makeColorMap();
+  /// The scene's text, to be edited in the window; null: not offered. Outlives the viewer.
+  SceneEditor* editor = nullptr;
 };
 
 /// The scale that suits a picture of this size.
@@ -27,6 +29,10 @@ double scaleFor(int width, int height);
 class Viewer {
  public:
   Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerOptions& options);
+
+  /// Takes over a changed scene. The camera and what else a person has turned stay, unless the scene's own
+  /// view has changed. `walls`: of a scene that begins anew; nothing: the same ones, only parameters changed.
+  void replaceScene(const Scene& scene, std::optional<std::vector<LineSegment>> walls);
 
   /// Draws one frame and returns what the user asked for.
   Wishes frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width, int height);
@@ -47,6 +53,7 @@ class Viewer {
   void moveCamera(const InputState& input, const Rect& area);
   void keys(const InputState& input, const RunStatus& run, Wishes& wishes);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
+  void takeView();
   Caption caption(const FrameView& frame, const RunStatus& run) const;
 
   Scene scene_;

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "app/platform/glfw_window.h"
+#include "app/viewer/editing.h"
 #include "app/viewer/simulation_thread.h"
 #include "app/viewer/viewer.h"
 
@@ -18,6 +19,9 @@ constexpr double kShortestFrame = 1.0 / 60;
 /// Panels answer to an input over a few frames.
 constexpr int kFramesAfterInput = 3;
 
+/// How often files and readers are asked for news (s).
+constexpr double kBetweenLooks = 0.25;
+
 void carryOut(const Wishes& wishes, const Settings& settings, SimulationThread& simulation) {
   if (wishes.settings) simulation.apply(settings);
   if (wishes.reset) simulation.reset();
@@ -26,37 +30,53 @@ void carryOut(const Wishes& wishes, const Settings& settings, SimulationThread& 
   if (wishes.step) simulation.step();
 }
 
+void printWarnings(const Scene& scene) {
+  for (const std::string& warning : scene.warnings)
+    std::cerr << scene.file.string() << ": warning: " << warning << '\n';
+}
+
 }  // namespace
 
 void runWindow(const Scene& scene, const WindowOptions& options) {
   using Clock = std::chrono::steady_clock;
   const std::string name = scene.name.empty() ? scene.stem() : scene.name;
   GlfwWindow window(name + " - Migiwa", kWidth, kHeight);
-  SimulationThread simulation(scene, options.threads, Pace::realTime);
-  for (const std::string& warning : simulation.scene().warnings) {
-    std::cerr << scene.file.string() << ": warning: " << warning << '\n';
-  }
-  Viewer viewer(simulation.scene(), simulation.walls(), {.scale = window.contentScale()});
-  if (options.playing) simulation.play();
+  SceneSession session(scene, {options.overrides, options.threads, Pace::realTime});
+  auto simulation = std::make_unique<SimulationThread>(scene, options.threads, Pace::realTime);
+  printWarnings(simulation->scene());
+  SceneEditor editor = makeEditor(session);
+  Viewer viewer(simulation->scene(), simulation->walls(),
+                {.scale = window.contentScale(), .editor = &editor});
+  if (options.playing) simulation->play();
 
   FrameSnapshot frame;
   std::future<void> saving;
   int redraws = kFramesAfterInput;
   long drawn = 0;
-  Clock::time_point last = Clock::now();
+  Clock::time_point last = Clock::now(), looked = last;
   while (!window.shouldClose() && (!options.frames || drawn < *options.frames)) {
     const double since = std::chrono::duration<double>(Clock::now() - last).count();
     const InputState input = window.waitForInput(std::max(kShortestFrame - since, 0.0));
     if (window.somethingHappened()) redraws = kFramesAfterInput;
-    if (simulation.takeFrame(frame)) redraws = std::max(redraws, 1);
+    if (std::chrono::duration<double>(Clock::now() - looked).count() > kBetweenLooks) {
+      looked = Clock::now();
+      if (std::optional<SceneChange> change = session.poll()) {
+        tellEditor(*change, session, editor);
+        if (change->scene) takeOver(*change, viewer, simulation);
+        if (change->scene) printWarnings(*change->scene);
+        redraws = kFramesAfterInput;
+      }
+    }
+    if (simulation->takeFrame(frame)) redraws = std::max(redraws, 1);
     const auto [width, height] = window.framebufferSize();
     last = Clock::now();
     if ((redraws == 0 && !options.frames) || width == 0 || height == 0) continue;
 
-    const Wishes wishes = viewer.frame(frame.view(), simulation.status(), input, width, height);
+    const Wishes wishes = viewer.frame(frame.view(), simulation->status(), input, width, height);
     viewer.copyToWindow();
     window.swap();
-    carryOut(wishes, viewer.settings(), simulation);
+    carryOut(wishes, viewer.settings(), *simulation);
+    carryOut(editor, session, viewer.settings(), viewer.view());
     if (wishes.savePicture && options.savePicture) {
       if (saving.valid()) saving.get();
       saving = std::async(std::launch::async, options.savePicture, viewer.picture());

@@ -5,14 +5,15 @@
 #include <optional>
 
 #include "app/render/image.h"
-#include "core/scene/scene.h"
+#include "core/scene/scene_reader.h"
 
 namespace migiwa {
 
 struct WindowOptions {
   int threads = 0;
-  bool playing = true;         ///< start at once
-  std::optional<long> frames;  ///< close after so many drawn frames
+  std::vector<Override> overrides;  ///< of the scene, for when its file is read again
+  bool playing = true;              ///< start at once
+  std::optional<long> frames;       ///< close after so many drawn frames
   /// Keeps a picture that the user asked for; called on a thread of its own.
   std::function<void(const Image&)> savePicture;
 };

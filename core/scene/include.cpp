@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/scene/overrides.h"
+#include "core/scene/scene_reader.h"
 
 namespace migiwa {
 

@@ -8,7 +8,6 @@
 
 #include <filesystem>
 #include <string_view>
-#include <vector>
 
 #include "core/base/fields.h"
 #include "core/scene/fault_list.h"
@@ -32,8 +31,5 @@ inline constexpr FieldDoc kSetDoc{
 /// origins what comes from where. Throws InputError when a file of the chain cannot be had; lesser faults are
 /// added.
 Json resolveIncludes(std::string_view text, const std::filesystem::path& name, FaultList& faults);
-
-/// The scene's file and those that it includes, outermost first, as far as they can be found.
-std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& file);
 
 }  // namespace migiwa

@@ -21,6 +21,8 @@ struct Camera {
   Vec3d target{0, 0, 0};  ///< (unit: m)
   Vec3d up{0, 1, 0};
   double fovDegrees = 40;  ///< vertical field of view (unit: degrees, range: [1, 120])
+
+  bool operator==(const Camera&) const = default;
 };
 
 enum class Axis { x, y, z };
@@ -31,6 +33,8 @@ struct ClipPlane {
   bool enabled = false;
   Axis axis = Axis::z;
   double at = 0;  ///< (unit: m)
+
+  bool operator==(const ClipPlane&) const = default;
 };
 
 struct View {
@@ -40,6 +44,8 @@ struct View {
   bool hasColorRange = false;
   std::array<double, 2> colorRange{
       0, 1};  ///< ends of the colour map, in the field's unit; used if hasColorRange
+
+  bool operator==(const View&) const = default;
 };
 
 struct Scene {

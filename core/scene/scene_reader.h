@@ -25,6 +25,9 @@ Scene readScene(const std::filesystem::path& file, const std::vector<Override>& 
 Scene parseScene(std::string_view text, const std::filesystem::path& name,
                  const std::vector<Override>& overrides = {});
 
+/// The scene's file and those that it includes, outermost first, as far as they can be found.
+std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& file);
+
 /// Visits every key of a scene: the one list that reading, writing and documentation share.
 void describeScene(FieldVisitor& visitor, Scene& scene);
 

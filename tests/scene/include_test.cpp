@@ -1,5 +1,4 @@
 // A scene that includes another: what is merged, and where faults are said to be.
-#include "core/scene/include.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,0 +1,46 @@
+// Notices that files have changed, however they were written: in place, or anew and renamed over the old one.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace migiwa {
+
+class SceneWatch {
+ public:
+  explicit SceneWatch(std::vector<std::filesystem::path> files) { setFiles(std::move(files)); }
+
+  /// Watches these from now on, and takes them as known.
+  void setFiles(std::vector<std::filesystem::path> files);
+
+  /// Watches these from now on; a change to one that was watched before is still told.
+  void follow(std::vector<std::filesystem::path> files);
+
+  /// Whether what is in the files has changed, and has been the same in the last two calls: while a file is
+  /// still being written, or is missing for a moment, there is nothing to be had. Cheap when nothing
+  /// happened; a few calls a second are meant. A change is told once.
+  bool poll();
+
+ private:
+  struct Stamp {
+    std::filesystem::file_time_type time;
+    std::uintmax_t size = 0;
+    bool operator==(const Stamp&) const = default;
+  };
+  struct Watched {
+    std::filesystem::path file;
+    std::optional<Stamp> stamp;       ///< when it was last read
+    bool young = false;               ///< then it was so new that another change may bear the same time
+    std::optional<std::string> text;  ///< what was in it; nothing: no file
+    std::optional<std::string> told;  ///< the same, when a change was last told
+  };
+
+  /// Reads the file if it seems to have changed; returns whether its text did.
+  static bool look(Watched& watched);
+
+  std::vector<Watched> files_;
+};
+
+}  // namespace migiwa

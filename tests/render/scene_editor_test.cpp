@@ -1,0 +1,203 @@
+// The scene's text in the window: typing, faults at their lines, Apply and Save as, with input made up.
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "app/platform/egl_context.h"
+#include "app/render/png.h"
+#include "app/viewer/editing.h"
+#include "core/io/output_file.h"
+#include "tests/render/test_scene.h"
+
+namespace migiwa {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720;
+namespace fs = std::filesystem;
+
+class SceneEditorTest : public testing::Test {
+ protected:
+  ~SceneEditorTest() override { fs::remove_all(folder_); }
+
+  fs::path writeScene() const {
+    std::ofstream(folder_ / "small.json") << R"({
+  "format": 1,
+  "name": "Small",
+  "particle_spacing": 0.1,
+  "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [0.5, 0.6, 0.5] } ],
+  "boundary": { "surfaces": [ { "shape": "box", "fluid": "inside", "min": [0, 0, 0], "max": [1, 1, 0.5] } ] },
+  "solver": { "time_step": 0.005, "max_iterations": 4 }
+}
+)";
+    return folder_ / "small.json";
+  }
+
+  void frame(const InputState& input) {
+    simulation_->takeFrame(frame_);
+    viewer_->frame(frame_.view(), RunStatus{}, input, kWidth, kHeight);
+    carryOut(editor_, session_, viewer_->settings(), viewer_->view());
+  }
+  void idle(int frames) {
+    for (int k = 0; k < frames; ++k) frame(InputState{});
+  }
+  void click(float x, float y) {
+    for (const bool pressed : {false, false, true, true, false, false}) {
+      InputState input;
+      input.mouseInside = true;
+      input.mouseX = x, input.mouseY = y;
+      input.buttons[0] = pressed;
+      frame(input);
+    }
+  }
+  void press(Key key) {
+    InputState input;
+    input.keys[static_cast<std::size_t>(key)] = true;
+    frame(input);
+    frame(InputState{});
+  }
+  void type(std::string_view text) {
+    InputState input;
+    for (const char c : text) input.characters.push_back(static_cast<unsigned char>(c));
+    frame(input);
+    frame(InputState{});
+  }
+  /// Opens the editor by its button, with the caret in the text.
+  void open() {
+    idle(2);
+    click(80, 40);
+    ASSERT_TRUE(editor_.open);
+    idle(3);
+  }
+  /// Waits for what was asked for, and takes it over as the window's loop does.
+  void settle() {
+    session_.wait();
+    std::optional<SceneChange> change = session_.poll();
+    ASSERT_TRUE(change);
+    tellEditor(*change, session_, editor_);
+    if (change->scene) takeOver(*change, *viewer_, simulation_);
+    idle(2);
+  }
+
+  const fs::path folder_ = freshFolder("editor");
+  std::unique_ptr<GlContext> context_ = makeEglContext();
+  Scene scene_ = readScene(writeScene());
+  SceneSession session_{scene_, {{}, 1, Pace::unlimited}};
+  std::unique_ptr<SimulationThread> simulation_ =
+      std::make_unique<SimulationThread>(scene_, 1, Pace::unlimited);
+  SceneEditor editor_ = makeEditor(session_);
+  std::unique_ptr<Viewer> viewer_ =
+      std::make_unique<Viewer>(simulation_->scene(), simulation_->walls(),
+                               ViewerOptions{.scale = 1, .timings = false, .editor = &editor_});
+  FrameSnapshot frame_;
+};
+
+TEST_F(SceneEditorTest, TypingChangesTheTextAndApplyTakesItOver) {
+  open();
+  editor_.goTo = 4;
+  idle(2);
+  EXPECT_EQ(editor_.caretLine, 4);
+  press(Key::home);
+  type("  \"duration\": 2.5,\n");
+  EXPECT_NE(editor_.text.find("  \"duration\": 2.5,\n  \"particle_spacing\""), std::string::npos)
+      << editor_.text;
+  EXPECT_TRUE(editor_.edited());
+  // A space has gone into the text, not to the simulation.
+  EXPECT_FALSE(simulation_->status().playing);
+  editor_.apply = true;
+  idle(1);
+  settle();
+  EXPECT_TRUE(editor_.faults.empty());
+  EXPECT_EQ(editor_.note, "taken over");
+}
+
+TEST_F(SceneEditorTest, AFaultIsMarkedListedAndFoundByAClick) {
+  const std::string before = editor_.text;
+  open();
+  editor_.goTo = 7;
+  idle(2);
+  press(Key::home);
+  type("  \"gravty\": 1,\n");
+  editor_.apply = true;
+  idle(1);
+  settle();
+  ASSERT_EQ(editor_.faults.size(), 1U);
+  EXPECT_EQ(editor_.faults[0].line, 7);
+  EXPECT_EQ(editor_.faults[0].message,
+            "/gravty: expected a known key, found \"gravty\"; did you mean \"gravity\"?");
+  EXPECT_EQ(simulation_->scene().name, "Small") << "the scene before it goes on";
+  editor_.goTo = 1;
+  editor_.wantsFocus = true;
+  idle(3);
+  EXPECT_EQ(editor_.caretLine, 1);
+
+  const Image picture = viewer_->picture();
+  fs::create_directories(MIGIWA_PICTURES);
+  writeTextFile(fs::path(MIGIWA_PICTURES) / "scene_editor.png", encodePng(picture));
+  // The first entry of the list under the text: its colour is found there, and a click on it moves the caret.
+  const auto alert = [&](int x, int y) {
+    const auto pixel = picture.pixel(x, y);
+    return pixel[0] > 200 && pixel[1] > 110 && pixel[1] < 170 && pixel[2] < 150;
+  };
+  int listed = 0;
+  for (int y = kHeight - 1; y > kHeight / 2 && listed == 0; --y)
+    for (int x = 720; x < 1000 && listed == 0; ++x)
+      if (alert(x, y)) listed = y;
+  ASSERT_GT(listed, 0);
+  click(800, static_cast<float>(listed - 4));
+  idle(2);
+  EXPECT_EQ(editor_.caretLine, 7);
+
+  editor_.revert = true;
+  idle(1);
+  settle();
+  EXPECT_EQ(editor_.text, before);
+  EXPECT_TRUE(editor_.faults.empty());
+}
+
+TEST_F(SceneEditorTest, GeometryBeginsAnewAndTheCameraStays) {
+  open();
+  viewer_->view().camera.eye = {4, 3, 2};
+  std::string deeper = editor_.text;
+  editor_.replaceText(deeper.replace(deeper.find("0.6"), 3, "0.8"));
+  editor_.apply = true;
+  idle(1);
+  settle();
+  EXPECT_EQ(editor_.note, "taken over from the start");
+  idle(1);
+  EXPECT_EQ(frame_.positions.size(), 5U * 8U * 5U);
+  EXPECT_EQ(viewer_->view().camera.eye, Vec3d(4, 3, 2));
+}
+
+TEST_F(SceneEditorTest, SaveAsKeepsCameraAndSettings) {
+  open();
+  viewer_->view().camera.eye = {4, 3, 2};
+  editor_.saveName = "turned";
+  editor_.save = true;
+  idle(1);
+  EXPECT_EQ(editor_.fileName, "turned.json");
+  const Scene saved = readScene(folder_ / "turned.json");
+  EXPECT_EQ(saved.view.camera.eye, Vec3d(4, 3, 2));
+  EXPECT_EQ(editor_.text, session_.fileText());
+  EXPECT_FALSE(editor_.edited());
+  editor_.saveName = "a/b";
+  editor_.save = true;
+  idle(1);
+  EXPECT_EQ(editor_.faults.size(), 1U);
+}
+
+TEST_F(SceneEditorTest, AFileThatBreaksLeavesAnEditedTextAlone) {
+  open();
+  editor_.replaceText(editor_.text + "\n");
+  std::ofstream(folder_ / "small.json") << "{ \"format\": 1\n  \"name\": 2 }";
+  EXPECT_FALSE(session_.poll());
+  session_.poll();
+  settle();
+  ASSERT_EQ(editor_.faults.size(), 1U);
+  EXPECT_EQ(editor_.faults[0].line, 2);
+  EXPECT_EQ(editor_.text.back(), '\n');
+  EXPECT_NE(editor_.text.find("Small"), std::string::npos);
+  EXPECT_EQ(editor_.note, "small.json has changed: 1 fault, the scene before it goes on");
+}
+
+}  // namespace
+}  // namespace migiwa

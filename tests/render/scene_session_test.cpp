@@ -1,0 +1,213 @@
+// A scene's file that is edited while its simulation is there.
+#include "app/viewer/scene_session.h"
+
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "core/simulation/simulation.h"
+#include "tests/render/test_scene.h"
+
+namespace migiwa {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string sceneText(double tolerance, double height) {
+  return R"({ "format": 1, "name": "Edited", "particle_spacing": 0.1,
+    "fluid": [{ "shape": "box", "min": [0, 0, 0], "max": [0.5, )" +
+         std::to_string(height) + R"(, 0.5] }],
+    "boundary": { "surfaces": [{ "shape": "box", "fluid": "inside", "min": [0, 0, 0], "max": [1, 1, 0.5] }] },
+    "solver": { "time_step": 0.005, "tolerance": )" +
+         std::to_string(tolerance) + " } }\n";
+}
+
+void writeInPlace(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// As most editors save.
+void writeByRename(const fs::path& file, const std::string& text) {
+  writeInPlace(file.string() + "~", text);
+  fs::rename(file.string() + "~", file);
+}
+
+class SceneWatchTest : public testing::Test {
+ protected:
+  ~SceneWatchTest() override { fs::remove_all(folder_); }
+  const fs::path folder_ = freshFolder("watch");
+  const fs::path file_ = folder_ / "scene.json";
+};
+
+TEST_F(SceneWatchTest, TellsAChangeOnceAndOnlyWhenItHasSettled) {
+  writeInPlace(file_, "one");
+  SceneWatch watch({file_});
+  EXPECT_FALSE(watch.poll());
+  writeInPlace(file_, "one more");
+  EXPECT_FALSE(watch.poll()) << "may still be written";
+  writeInPlace(file_, "one more word");
+  EXPECT_FALSE(watch.poll()) << "is still written";
+  EXPECT_TRUE(watch.poll());
+  EXPECT_FALSE(watch.poll());
+}
+
+TEST_F(SceneWatchTest, SeesFilesRenamedOverAndMissingForAMoment) {
+  writeInPlace(file_, "one");
+  SceneWatch watch({file_});
+  writeByRename(file_, "another");
+  EXPECT_FALSE(watch.poll());
+  EXPECT_TRUE(watch.poll());
+  fs::rename(file_, folder_ / "backup");
+  EXPECT_FALSE(watch.poll());
+  writeInPlace(file_, "a third one");
+  EXPECT_FALSE(watch.poll());
+  EXPECT_TRUE(watch.poll());
+}
+
+TEST_F(SceneWatchTest, ATouchIsNoChange) {
+  writeInPlace(file_, "one");
+  SceneWatch watch({file_});
+  fs::last_write_time(file_, fs::last_write_time(file_) + std::chrono::seconds(7));
+  EXPECT_FALSE(watch.poll());
+  EXPECT_FALSE(watch.poll());
+  writeByRename(file_, "one");
+  EXPECT_FALSE(watch.poll());
+  EXPECT_FALSE(watch.poll());
+}
+
+TEST_F(SceneWatchTest, AFileThatStaysAwayIsAChange) {
+  writeInPlace(file_, "one");
+  SceneWatch watch({file_});
+  fs::remove(file_);
+  EXPECT_FALSE(watch.poll());
+  EXPECT_TRUE(watch.poll());
+}
+
+class SceneSessionTest : public testing::Test {
+ protected:
+  SceneSessionTest() {
+    writeInPlace(file_, sceneText(0.02, 0.5));
+    session_ = std::make_unique<SceneSession>(readScene(file_), SessionOptions{{}, 1, Pace::unlimited});
+  }
+  ~SceneSessionTest() override { fs::remove_all(folder_); }
+
+  /// What the session says of what was begun or changed, if anything.
+  std::optional<SceneChange> change() const {
+    // A change is seen at the first call, believed at the second, and read when it has been waited for.
+    for (int k = 0; k < 4; ++k) {
+      if (auto change = session_->poll()) return change;
+      session_->wait();
+    }
+    return std::nullopt;
+  }
+
+  const fs::path folder_ = freshFolder("session");
+  const fs::path file_ = folder_ / "scene.json";
+  std::unique_ptr<SceneSession> session_;
+};
+
+TEST_F(SceneSessionTest, ParametersNeedNoNewBeginning) {
+  EXPECT_FALSE(change());
+  writeByRename(file_, sceneText(0.04, 0.5));
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->scene);
+  EXPECT_EQ(changed->scene->solver.tolerance, 0.04);
+  EXPECT_FALSE(changed->simulation);
+  EXPECT_TRUE(changed->fromFile);
+  EXPECT_FALSE(change());
+}
+
+TEST_F(SceneSessionTest, FluidAndWallsBeginAnew) {
+  writeInPlace(file_, sceneText(0.02, 0.8));
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->scene && changed->simulation);
+  FrameSnapshot frame;
+  ASSERT_TRUE(changed->simulation->takeFrame(frame));
+  EXPECT_EQ(frame.positions.size(), 5U * 8U * 5U);
+}
+
+TEST_F(SceneSessionTest, ABrokenFileIsToldAndMendedAgain) {
+  writeByRename(file_, sceneText(7, 0.5));
+  const auto faulty = change();
+  ASSERT_TRUE(faulty && !faulty->scene && !faulty->simulation);
+  ASSERT_EQ(faulty->faults.size(), 1U);
+  EXPECT_EQ(faulty->faults[0].place, file_.string() + ":/solver/tolerance");
+  writeByRename(file_, "{");
+  const auto broken = change();
+  ASSERT_TRUE(broken && broken->faults.size() == 1);
+  EXPECT_EQ(broken->faults[0].place, file_.string() + ":1:2");
+  writeByRename(file_, sceneText(0.02, 0.5));
+  const auto mended = change();
+  ASSERT_TRUE(mended && mended->scene);
+  EXPECT_FALSE(mended->simulation) << "the simulation has gone on all the while";
+}
+
+TEST_F(SceneSessionTest, IncludedFilesAreWatchedToo) {
+  const fs::path variant = folder_ / "variant.json";
+  writeInPlace(variant, R"({ "include": "scene.json", "solver": { "max_iterations": 9 } })");
+  session_ = std::make_unique<SceneSession>(readScene(variant), SessionOptions{{}, 1, Pace::unlimited});
+  writeByRename(file_, sceneText(0.05, 0.5));
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->scene);
+  EXPECT_EQ(changed->scene->solver.tolerance, 0.05);
+  EXPECT_EQ(changed->scene->solver.maxIterations, 9);
+  // And one that is included from now on.
+  writeInPlace(folder_ / "third.json", sceneText(0.06, 0.5));
+  writeByRename(variant, R"({ "include": "third.json" })");
+  ASSERT_TRUE(change());
+  writeByRename(folder_ / "third.json", sceneText(0.07, 0.5));
+  const auto third = change();
+  ASSERT_TRUE(third && third->scene);
+  EXPECT_EQ(third->scene->solver.tolerance, 0.07);
+}
+
+TEST_F(SceneSessionTest, TextsFromTheWindowAreTakenWithoutTheFile) {
+  session_->apply(sceneText(0.02, 0.7));
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->scene && changed->simulation);
+  EXPECT_FALSE(changed->fromFile);
+  EXPECT_EQ(session_->fileText(), sceneText(0.02, 0.5));
+  session_->apply("{ \"format\": 1, }");
+  const auto broken = change();
+  ASSERT_TRUE(broken);
+  EXPECT_EQ(broken->faults.size(), 1U);
+}
+
+TEST_F(SceneSessionTest, SavedAsItIsNowReadsBackToTheSameHash) {
+  Scene scene = readScene(file_);
+  Settings settings;
+  settings.solver = scene.solver;
+  settings.boundary = scene.boundary;
+  settings.solver.maxIterations = 3;
+  settings.boundary.handling = BoundaryHandling::none;
+  ViewState view;
+  view.camera = scene.view.camera;
+  view.camera.eye = {3, 2, 1};
+  view.clip = {true, Axis::z, 0.25};
+  view.color = ColorField::speed;
+  session_->saveAs("other", session_->fileText(), settings, view);
+
+  const Scene saved = readScene(folder_ / "other.json");
+  EXPECT_EQ(saved.view.camera, view.camera);
+  EXPECT_EQ(saved.view.clip, view.clip);
+  EXPECT_EQ(saved.view.color, ColorField::speed);
+  Simulation one(saved, 1), two(scene, 1);
+  two.apply(settings);
+  for (int k = 0; k < 5; ++k) one.advanceFrame(), two.advanceFrame();
+  EXPECT_EQ(one.stateHash(), two.stateHash());
+  EXPECT_EQ(session_->file(), folder_ / "other.json");
+  EXPECT_EQ(session_->fileText().find("/solver"), std::string::npos);
+}
+
+TEST_F(SceneSessionTest, NothingIsSavedFromAFaultyTextOrUnderAWrongName) {
+  const Settings settings;
+  const ViewState view;
+  EXPECT_THROW(session_->saveAs("other.json", "{}", settings, view), InputError);
+  EXPECT_THROW(session_->saveAs("", session_->fileText(), settings, view), InputError);
+  EXPECT_THROW(session_->saveAs("../other.json", session_->fileText(), settings, view), InputError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+}  // namespace
+}  // namespace migiwa
