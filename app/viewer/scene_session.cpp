@@ -74,6 +74,7 @@ std::string SceneSession::saveAs(const std::string& name, const std::string& tex
   Scene now = parseScene(text, file_, options_.overrides);
   now.solver = settings.solver;
   now.boundary = settings.boundary;
+  now.effects = settings.effects;
   now.view.camera = view.camera;
   now.view.clip = view.clip;
   if (now.view.color != view.color) now.view.hasColorRange = false;

@@ -56,7 +56,7 @@ void Viewer::takeView() {
 void Viewer::replaceScene(const Scene& scene, std::optional<std::vector<LineSegment>> walls) {
   const bool viewChanged = !(scene.view == scene_.view);
   scene_ = scene;
-  settings_ = {scene.solver, scene.boundary};
+  settings_ = {scene.solver, scene.boundary, scene.effects};
   if (walls) {
     bounds_ = scene.bounds();
     referenceSpeed_ = referenceSpeed(scene);

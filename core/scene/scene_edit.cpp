@@ -168,6 +168,7 @@ std::string startOf(Scene scene) {
   scene.description = plain.description;
   scene.duration = plain.duration;
   scene.boundary = plain.boundary;
+  scene.effects.clear();
   scene.solver = plain.solver;
   scene.view = plain.view;
   return writeScene(std::move(scene));

@@ -179,6 +179,7 @@ TEST_F(SceneSessionTest, SavedAsItIsNowReadsBackToTheSameHash) {
   Settings settings;
   settings.solver = scene.solver;
   settings.boundary = scene.boundary;
+  settings.effects = scene.effects;
   settings.solver.maxIterations = 3;
   settings.boundary.handling = BoundaryHandling::none;
   ViewState view;
