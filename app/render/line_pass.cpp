@@ -2,15 +2,8 @@
 
 namespace migiwa {
 
-LinePass::LinePass(std::span<const LineSegment> lines)
-    : program_("line"),
-      lines_(makeBuffer()),
-      layout_(makeVertexArray()),
-      count_(static_cast<GLsizei>(lines.size())) {
+LinePass::LinePass() : program_("line"), lines_(makeBuffer()), layout_(makeVertexArray()) {
   static_assert(sizeof(LineSegment) == 6 * sizeof(float), "two points without padding");
-  if (count_ > 0) {
-    glNamedBufferStorage(lines_.name(), static_cast<GLsizeiptr>(lines.size_bytes()), lines.data(), 0);
-  }
   glVertexArrayVertexBuffer(layout_.name(), 0, lines_.name(), 0, sizeof(LineSegment));
   glVertexArrayBindingDivisor(layout_.name(), 0, 1);
   for (const GLuint end : {0U, 1U}) {
@@ -19,6 +12,12 @@ LinePass::LinePass(std::span<const LineSegment> lines)
                               static_cast<GLuint>(sizeof(Vec3f)) * end);
     glVertexArrayAttribBinding(layout_.name(), end, 0);
   }
+}
+
+void LinePass::set(std::span<const LineSegment> lines) {
+  count_ = static_cast<GLsizei>(lines.size());
+  glNamedBufferData(lines_.name(), static_cast<GLsizeiptr>(lines.size_bytes()), lines.data(),
+                    GL_DYNAMIC_DRAW);
 }
 
 void LinePass::draw(float widthPixels) const {

@@ -10,14 +10,16 @@ namespace migiwa {
 
 class LinePass {
  public:
-  explicit LinePass(std::span<const LineSegment> lines);
+  LinePass();
+  /// From now on draws these.
+  void set(std::span<const LineSegment> lines);
   void draw(float widthPixels) const;
 
  private:
   ShaderProgram program_;
   GlBuffer lines_;
   GlVertexArray layout_;
-  GLsizei count_;
+  GLsizei count_ = 0;
 };
 
 }  // namespace migiwa

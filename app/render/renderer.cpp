@@ -45,9 +45,9 @@ FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderT
 Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
     : ground_(makeGround(surroundings.bounds, surroundings.up)),
       spherePass_(colors),
-      linePass_(surroundings.walls),
       groundPass_(ground_),
       uniforms_(makeBuffer()) {
+  linePass_.set(surroundings.walls);
   glNamedBufferStorage(uniforms_.name(), sizeof(FrameUniforms), nullptr, GL_DYNAMIC_STORAGE_BIT);
 }
 
@@ -76,6 +76,10 @@ void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget
   glEnable(GL_MULTISAMPLE);
   glDisable(GL_CULL_FACE);
 
+  if (frame.info.walls && frame.info.walls != movedWalls_) {
+    movedWalls_ = frame.info.walls;
+    linePass_.set(*movedWalls_);
+  }
   collectSpheres(frame, shot);
   const float radius = 0.5F * frame.info.spacing;
   groundPass_.draw(spheres_, radius, shot.camera.eye);

@@ -2,6 +2,7 @@
 // of the solver, of panels, or of windows. The target's context must be current for its whole life.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,8 @@ class Renderer {
   LinePass linePass_;
   GroundPass groundPass_;
   GlBuffer uniforms_;
+  std::shared_ptr<const std::vector<LineSegment>>
+      movedWalls_;  ///< that linePass_ shows; null: those of the start
   std::vector<float> values_;
   std::vector<Float4> spheres_;
 };

@@ -8,7 +8,11 @@ namespace migiwa {
 Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfaces_(std::move(surfaces)) {
   for (auto& surface : surfaces_) {
     if (!surface->motion) continue;
-    moving_.push_back(std::make_shared<MovingSurface>(surface));
+    const auto same = std::find_if(moving_.begin(), moving_.end(), [&](const auto& known) {
+      return known->motion().sameAs(*surface->motion);
+    });
+    const int group = same != moving_.end() ? (*same)->group() : static_cast<int>(moving_.size());
+    moving_.push_back(std::make_shared<MovingSurface>(surface, group));
     surface = moving_.back();
   }
 }

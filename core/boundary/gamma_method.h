@@ -36,6 +36,8 @@ class GammaMethod {
  public:
   virtual ~GammaMethod() = default;
   virtual GammaChoice choice() const { return {}; }
+  /// Takes in that walls of the boundary have moved. Not while evaluate() runs.
+  virtual void wallsMoved() {}
   /// Fills out[i] for points[i] (xyz in m). Thread-safe.
   virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
 };

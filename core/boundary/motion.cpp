@@ -81,7 +81,7 @@ void Motion::describe(FieldVisitor& visitor) {
       (oscillates && swing != 0) ||
       std::any_of(keyframes.begin(), keyframes.end(), [](const auto& frame) { return frame.degrees != 0; });
   if (turned && !turns)
-    visitor.fault("", "expected \"rotation\" with the axis and point that degrees turn about, found none");
+    visitor.fault("", "expected rotation with the axis and point that degrees turn about, found none");
   const bool moves =
       velocity.norm() > 0 || (turns && degreesPerSecond != 0) || oscillates || !keyframes.empty();
   if (!moves)

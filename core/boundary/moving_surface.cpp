@@ -27,7 +27,8 @@ const Directions& turned(const Directions& directions, const Eigen::Matrix3f& tu
 
 }  // namespace
 
-MovingSurface::MovingSurface(std::shared_ptr<const Surface> rest) : rest_(std::move(rest)) {
+MovingSurface::MovingSurface(std::shared_ptr<const Surface> rest, int group)
+    : rest_(std::move(rest)), group_(group) {
   moveTo(0, 0);
 }
 

@@ -8,14 +8,16 @@ namespace migiwa {
 
 class MovingSurface final : public Surface {
  public:
-  /// The wall where `rest->motion` has it at time 0.
-  explicit MovingSurface(std::shared_ptr<const Surface> rest);
+  /// The wall where `rest->motion` has it at time 0. Walls of the same group never move relative to each
+  /// other.
+  MovingSurface(std::shared_ptr<const Surface> rest, int group);
 
   /// Puts the wall where it is at `now` (s), having been at its place of `before` a step ago.
   void moveTo(double before, double now);
 
   const std::shared_ptr<const Surface>& rest() const { return rest_; }
   const Motion& motion() const { return *rest_->motion; }
+  int group() const { return group_; }
   /// Whether the last step has moved it.
   bool moved() const { return moved_; }
   Vec3f toRest(const Vec3f& p) const { return toRest_ * (p - shift_); }
@@ -43,6 +45,7 @@ class MovingSurface final : public Surface {
 
  private:
   std::shared_ptr<const Surface> rest_;
+  int group_;
   Pose now_ = Pose::Identity();
   bool moved_ = false;
   bool turned_ = false;  ///< against the rest frame

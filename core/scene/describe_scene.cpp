@@ -31,14 +31,17 @@ int shapeOf(const T& object, std::span<const std::string_view> names, std::uniqu
   return -1;
 }
 
-/// A list of objects whose "shape" says what they are. Adds to `objects` what a reader finds.
+/// A list of objects whose "shape" says what they are. Adds to `objects` what a reader finds. `common`, if
+/// given, visits what all shapes share.
 template <class T>
 void describeShapes(FieldVisitor& visitor, std::string_view key, const FieldDoc& doc,
                     std::vector<std::shared_ptr<const T>>& objects, std::span<const std::string_view> names,
-                    std::unique_ptr<T> (*make)(int), const std::function<void(FieldVisitor&, T&)>& describe) {
+                    std::unique_ptr<T> (*make)(int), const std::function<void(FieldVisitor&, T&)>& describe,
+                    const std::function<void(FieldVisitor&, T&)>& common = {}) {
   visitor.list(key, objects.size(), doc, [&](FieldVisitor& element, std::size_t at) {
     int shape = at < objects.size() ? shapeOf(*objects[at], names, make) : -1;
     const int known = shape;
+    const std::size_t before = objects.size();
     element.variant("shape", shape, names, {"", "What it is.", Presence::required},
                     [&](FieldVisitor& fields, int picked) {
                       if (picked == known) return describe(fields, describable(objects[at]));
@@ -46,6 +49,12 @@ void describeShapes(FieldVisitor& visitor, std::string_view key, const FieldDoc&
                       describe(fields, *made);
                       objects.push_back(std::move(made));
                     });
+    if (!common) return;
+    if (known >= 0) {
+      common(element, describable(objects[at]));
+    } else if (objects.size() > before) {
+      common(element, describable(objects.back()));
+    }
   });
 }
 
@@ -66,6 +75,26 @@ void describeFluid(FieldVisitor& visitor, Scene& scene) {
       });
 }
 
+void describeEmitters(FieldVisitor& visitor, Scene& scene) {
+  const double spacing = visitor.sound({"particle_spacing"}) ? scene.particleSpacing : 0;
+  visitor.list("emitters", scene.emitters.size(), {"", "Mouths that give fluid while the simulation runs."},
+               [&](FieldVisitor& fields, std::size_t at) {
+                 if (at >= scene.emitters.size()) scene.emitters.emplace_back();
+                 scene.emitters[at].describe(fields, spacing);
+               });
+}
+
+void describeMotion(FieldVisitor& visitor, std::optional<Motion>& motion) {
+  bool present = motion.has_value();
+  visitor.object(
+      "motion", {"", "How the wall moves; left out, it stands still. What is named here adds up."},
+      [&](FieldVisitor& fields) {
+        if (!motion) motion.emplace();
+        motion->describe(fields);
+      },
+      &present);
+}
+
 void describeBoundary(FieldVisitor& visitor, Scene& scene) {
   BoundaryParameters& boundary = scene.boundary;
   visitor.choice("handling", boundary.handling, kHandlingNames,
@@ -81,9 +110,10 @@ void describeBoundary(FieldVisitor& visitor, Scene& scene) {
                    fields.integer("samples", boundary.samples, Range::closed(100, 1e8),
                                   {"1", "Samples of the method monte_carlo."});
                  });
-  describeShapes<Surface>(visitor, "surfaces", {"", "Walls. The fluid is on the fluid side of all of them."},
-                          scene.surfaces, surfaceShapes(), makeSurface,
-                          [](FieldVisitor& fields, Surface& surface) { surface.describe(fields); });
+  describeShapes<Surface>(
+      visitor, "surfaces", {"", "Walls. The fluid is on the fluid side of all of them."}, scene.surfaces,
+      surfaceShapes(), makeSurface, [](FieldVisitor& fields, Surface& surface) { surface.describe(fields); },
+      [](FieldVisitor& fields, Surface& surface) { describeMotion(fields, surface.motion); });
 }
 
 void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
@@ -198,6 +228,7 @@ void describeScene(FieldVisitor& visitor, Scene& scene) {
                  {"m", "Distance of neighbouring particles at rest."});
   visitor.vector("gravity", scene.gravity, {"m/s^2", "Acceleration of all of the fluid."});
   describeFluid(visitor, scene);
+  describeEmitters(visitor, scene);
   visitor.object("boundary", {"", "The walls and how the density is corrected at them."},
                  [&](FieldVisitor& fields) { describeBoundary(fields, scene); });
   visitor.object("solver", {"", "The constraint solver."},

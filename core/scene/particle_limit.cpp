@@ -35,6 +35,8 @@ double firstNumber(const char* file) {
 double particleCount(const Scene& scene) {
   double particles = 0;
   for (const auto& source : scene.fluid) particles += source->count(scene.particleSpacing);
+  for (const Emitter& emitter : scene.emitters)
+    particles += emitter.count(scene.particleSpacing, scene.duration);
   return particles;
 }
 

@@ -11,7 +11,7 @@ namespace migiwa {
 /// Memory that a particle takes while it is simulated, all arrays and neighbour lists together (bytes).
 inline constexpr double kBytesPerParticle = 600;
 
-/// Particles of all fluid sources, at most.
+/// Particles of all fluid sources, and of all emitters within the duration, at most.
 double particleCount(const Scene& scene);
 
 /// Memory that can still be had (bytes), infinite where the system does not say.

@@ -11,6 +11,7 @@
 #include "core/boundary/surface.h"
 #include "core/effects/effect.h"
 #include "core/scene/color_field.h"
+#include "core/scene/emitter.h"
 #include "core/scene/fluid_source.h"
 #include "core/solver/parameters.h"
 
@@ -56,6 +57,7 @@ struct Scene {
   double particleSpacing = 0.05;  ///< (unit: m)
   Vec3d gravity{0, -9.81, 0};     ///< (unit: m/s^2)
   std::vector<std::shared_ptr<const FluidSource>> fluid;
+  std::vector<Emitter> emitters;
   std::vector<std::shared_ptr<const Surface>> surfaces;
   BoundaryParameters boundary;
   SolverParameters solver;
@@ -65,7 +67,7 @@ struct Scene {
 
   std::string stem() const { return file.stem().string(); }
   double supportRadius() const { return solver.supportRatio * particleSpacing; }
-  /// Extent of fluid and finite walls.
+  /// Extent of fluid and finite walls, wherever they are within the duration.
   Bounds bounds() const;
 };
 

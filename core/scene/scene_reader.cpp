@@ -19,13 +19,14 @@ constexpr std::string_view kSpacing = "/particle_spacing";
 /// What takes the whole scene to see: too many particles for this machine, or too far away for a float's
 /// digits.
 void checkWhole(const Scene& scene, FaultList& faults) {
-  if (faults.anyBelow("/fluid") || faults.anyBelow(kSpacing)) return;
+  if (faults.anyBelow("/fluid") || faults.anyBelow("/emitters") || faults.anyBelow(kSpacing)) return;
   const double spacing = scene.particleSpacing;
   if (const auto fault = tooManyParticles(particleCount(scene), spacing, availableMemory()))
     faults.add(kSpacing, *fault);
 
   Bounds fluid;
   for (const auto& source : scene.fluid) fluid.include(source->bounds());
+  for (const Emitter& emitter : scene.emitters) fluid.include(emitter.bounds());
   if (fluid.empty()) return;
   const double farthest = std::max(fluid.min.cwiseAbs().maxCoeff(), fluid.max.cwiseAbs().maxCoeff());
   const double coarsest = farthest * double(std::numeric_limits<float>::epsilon());

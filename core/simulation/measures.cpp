@@ -18,7 +18,8 @@ struct Tank {
 
 /// The box that holds the fluid, if gravity runs along one of its axes and nothing else stands in it.
 std::optional<Tank> uprightTank(const Scene& scene) {
-  if (scene.gravity.norm() <= 0 || scene.surfaces.size() != 1) return std::nullopt;
+  if (scene.gravity.norm() <= 0 || scene.surfaces.size() != 1 || scene.surfaces.front()->motion)
+    return std::nullopt;
   const BoxGeometry* box = scene.surfaces.front()->tank();
   if (box == nullptr) return std::nullopt;
   int axis = 0;
@@ -86,11 +87,11 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
 
 void SettledSampler::sample(const Simulation& simulation) {
   const FrameView view = simulation.view();
-  sample(simulation.scene(), view.positions, view.velocities);
+  sample(simulation.scene(), view.positions, view.velocities, simulation.time());
 }
 
 void SettledSampler::sample(const Scene& scene, std::span<const Float4> positions,
-                            std::span<const Float4> velocities) {
+                            std::span<const Float4> velocities, double time) {
   const std::size_t n = positions.size();
   if (n == 0) return;
   ++sums_.frames;
@@ -99,7 +100,8 @@ void SettledSampler::sample(const Scene& scene, std::span<const Float4> position
   sums_.squaredSpeed += squaredSpeed / static_cast<double>(n);
 
   ThreadPool pool(1);
-  const Boundary boundary(scene.surfaces);
+  Boundary boundary(scene.surfaces);
+  boundary.moveTo(time, time);
   for (const NearestNeighbour& nearest :
        nearestNeighbours(positions, boundary, static_cast<float>(scene.particleSpacing),
                          static_cast<float>(scene.supportRadius()), pool)) {

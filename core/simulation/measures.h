@@ -31,8 +31,10 @@ struct SettledMeasures {
 class SettledSampler {
  public:
   void sample(const Simulation& simulation);
-  /// The same for particles from elsewhere; velocities in m/s, of the same length as positions (m).
-  void sample(const Scene& scene, std::span<const Float4> positions, std::span<const Float4> velocities);
+  /// The same for particles from elsewhere; velocities in m/s, of the same length as positions (m),
+  /// between walls where they are at `time` (s).
+  void sample(const Scene& scene, std::span<const Float4> positions, std::span<const Float4> velocities,
+              double time = 0);
   SettledMeasures result() const;
 
   /// Samples belong to a run that ends at frame `last`: forgets those of another.

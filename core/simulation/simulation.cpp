@@ -8,6 +8,7 @@
 #include "core/boundary/boundary.h"
 #include "core/boundary/gamma_method.h"
 #include "core/boundary/gridded_surface.h"
+#include "core/simulation/emission.h"
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
 #include "core/simulation/step_memory.h"
@@ -18,13 +19,19 @@ namespace migiwa {
 
 struct Simulation::State {
   State(Scene theScene, int threads)
-      : scene(std::move(theScene)), pool(threads), boundary(walls()), step(pool, boundary) {}
+      : scene(std::move(theScene)),
+        pool(threads),
+        boundary(walls()),
+        step(pool, boundary),
+        emission(scene, boundary) {}
 
   Boundary walls() {
     return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool));
   }
   void configure();
-  void advanceSubstep(float dt);
+  void advanceSubstep(double start, double dt);
+  void moveWalls(double before, double now);
+  double largestSpeed(double start, double span) const;
   std::uint64_t hash() {
     return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, pool);
   }
@@ -35,6 +42,7 @@ struct Simulation::State {
   ThreadPool pool;
   Boundary boundary;
   StepState step;
+  Emission emission;
   PickedGamma gamma;
   EffectPipeline effects;
   RunStatistics statistics;
@@ -59,10 +67,14 @@ void Simulation::State::configure() {
   step.spacing = static_cast<float>(scene.particleSpacing);
   if (const auto supportRadius = static_cast<float>(scene.supportRadius());
       supportRadius != step.supportRadius) {
-    if (step.supportRadius > 0) boundary = walls();
+    if (step.supportRadius > 0) {
+      boundary = walls();
+      boundary.moveTo(time, time);
+    }
     step.supportRadius = supportRadius;
   }
   step.thinWalls = thinWalls(boundary, step.supportRadius);
+  step.barringWalls = barringWalls(boundary, step.supportRadius);
   step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
   gamma = {};
   info.handling = "no correction";
@@ -100,6 +112,8 @@ Simulation::Simulation(Scene scene, int threads)
   }
   state.health = inspect(state.step, state.limits);
   state.info.stateHash = stateHash();
+  if (state.boundary.moves())
+    state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
 }
 
 Simulation::~Simulation() = default;
@@ -112,15 +126,37 @@ void Simulation::State::describeFrame() {
   info.stateHash = hash();
 }
 
-void Simulation::State::advanceSubstep(float dt) {
-  const auto start = std::chrono::steady_clock::now();
-  step.timeStep = dt;
+/// Walls are where they end up, having been at their places of `before`.
+void Simulation::State::moveWalls(double before, double now) {
+  boundary.moveTo(before, now);
+  if (gamma.method) gamma.method->wallsMoved();
+  // What goes along with the walls is not lost.
+  for (const auto& wall : boundary.moving()) limits.scene.include(wall->bounds());
+}
+
+/// How fast (m/s) particles and walls may come towards each other between `start` and `start + span` (s).
+double Simulation::State::largestSpeed(double start, double span) const {
+  const double fluid = static_cast<double>(health.maxSpeed) + scene.gravity.norm() * span;
+  double wall = 0;
+  for (const auto& moving : boundary.moving()) {
+    const Bounds own = moving->rest()->bounds();
+    wall = std::max(wall, migiwa::largestSpeed(moving->motion(), own.empty() ? scene.bounds() : own, start,
+                                               start + span));
+  }
+  return std::max(fluid, emission.largestSpeed(start, start + span)) + wall;
+}
+
+void Simulation::State::advanceSubstep(double start, double dt) {
+  const auto began = std::chrono::steady_clock::now();
+  step.timeStep = static_cast<float>(dt);
   step.gammaFloored = 0;
   savedNeighbours.clear();
   step.times.clear();
+  if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
+  if (!emission.empty()) step.times.time("emitters", [&] { emission.emit(start, step, statistics); });
   advanceStep(step, effects);
   step.times.time("check", [&] { health = inspect(step, limits); });
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   statistics.record(step, health, dt, seconds);
 }
 
@@ -131,16 +167,16 @@ void Simulation::advanceFrame() {
   const double frameStep = parameters.timeStep;
   const double longest = frameStep / parameters.substeps;
   const double reach = parameters.cfl * static_cast<double>(state.step.supportRadius);
-  const double fall = state.scene.gravity.norm();
 
   StageTimes frameTimes;
   double wallSeconds = 0;
   double left = frameStep;
   long taken = 0;
   while (left > 1e-9 * frameStep && !stopped()) {
+    const double start = state.time + (frameStep - left);
     double step = longest;
     if (parameters.cfl > 0) {
-      const double speed = static_cast<double>(state.health.maxSpeed) + fall * longest;
+      const double speed = state.largestSpeed(start, longest);
       if (speed * step > reach) step = reach / speed;
     }
     long parts = static_cast<long>(std::ceil(left / step - 1e-6));
@@ -151,7 +187,7 @@ void Simulation::advanceFrame() {
       parts = std::max(1L, kMostSubsteps - taken);
     }
     const double dt = left / static_cast<double>(std::max(parts, 1L));
-    state.advanceSubstep(static_cast<float>(dt));
+    state.advanceSubstep(start, dt);
     left -= dt;
     ++taken;
     frameTimes.add(state.step.times);
@@ -163,6 +199,8 @@ void Simulation::advanceFrame() {
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
   state.describeFrame();
+  if (state.boundary.moves())
+    state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
 }
 
 long Simulation::frameAt(double time) const {
@@ -230,9 +268,14 @@ void Simulation::visitState(StateVisitor& visitor) {
     neighbours.assign(counts.begin(), counts.end());
   }
   visitStepMemory(visitor, state.step, neighbours);
+  state.emission.visit(visitor);
   if (!visitor.reading()) return;
   state.savedNeighbours = std::move(neighbours);
   state.describeFrame();
+  if (!state.boundary.moves()) return;
+  // Where walls are follows from the time.
+  state.moveWalls(state.time, state.time);
+  state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
 }
 
 std::vector<LineSegment> Simulation::wireframe() const {
@@ -244,7 +287,7 @@ std::vector<LineSegment> Simulation::wireframe() const {
     bounds.include(camera.target);
     bounds = bounds.grown(0.4 * (camera.eye - camera.target).norm());
   }
-  for (const auto& surface : state_->scene.surfaces) surface->wireframe(bounds, lines);
+  for (const auto& surface : state_->boundary.surfaces()) surface->wireframe(bounds, lines);
   return lines;
 }
 

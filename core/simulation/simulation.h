@@ -52,7 +52,7 @@ class Simulation {
   /// takes a simulation of the same scene; throws StateError when what is read does not fit, and is then of
   /// no further use.
   void visitState(StateVisitor& visitor);
-  /// Walls for drawing.
+  /// Walls for drawing, where they are now.
   std::vector<LineSegment> wireframe() const;
 
  private:

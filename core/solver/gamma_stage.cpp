@@ -26,6 +26,32 @@ void evaluate(const GammaMethod& method, std::span<WallSlot> slots) {
   }
 }
 
+/// Takes what is known of a particle that is now at p along with the wall in its reach. False where a wall
+/// that has moved is in reach together with one that did not move with it: there gamma changes with time.
+bool carryAlong(const StepState& state, const Vec3f& p, WallSlot& slot) {
+  const float reach = (1 + kLinearReach) * state.supportRadius;
+  const MovingSurface* mover = nullptr;
+  for (const auto& wall : state.boundary.moving()) {
+    if (!wall->moved()) continue;
+    // One that has just gone out of reach was in it.
+    Vec3f normal;
+    if (wall->distance(p, normal) >= reach + (wall->carried(p) - p).norm()) continue;
+    if (mover != nullptr && mover->group() != wall->group()) return false;
+    mover = wall.get();
+  }
+  if (mover == nullptr) return true;
+  for (const auto& surface : state.boundary.surfaces()) {
+    const auto* const wall = dynamic_cast<const MovingSurface*>(surface.get());
+    if (wall != nullptr && wall->group() == mover->group()) continue;
+    Vec3f normal;
+    if (surface->distance(p, normal) < reach) return false;
+  }
+  slot.at = Float4(mover->carried(slot.at.xyz()));
+  slot.sample.gradient = mover->carriedDirection(slot.sample.gradient);
+  slot.sample.pairGradient = mover->carriedDirection(slot.sample.pairGradient);
+  return true;
+}
+
 float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius) {
   return std::min(slot.sample.gamma + slot.sample.gradient.dot(moved) / supportRadius, 1.0F);
 }
@@ -60,8 +86,9 @@ void evaluateGamma(StepState& state) {
       const Vec3f p = state.current[i].xyz();
       // What the step before knew of a particle that has hardly moved since holds for this one too.
       if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall) {
-        const WallSlot& old = state.wallSlots[slot];
-        if ((p - old.at.xyz()).squaredNorm() <= reach * reach) {
+        WallSlot& old = state.wallSlots[slot];
+        const bool holds = !state.boundary.moves() || carryAlong(state, p, old);
+        if (holds && (p - old.at.xyz()).squaredNorm() <= reach * reach) {
           known.push_back(old);
           known.back().particle = particle;
           continue;

@@ -45,7 +45,9 @@ struct StepState {
 
   ThreadPool& pool;
   const Boundary& boundary;
-  std::vector<const Surface*> thinWalls;     ///< thinner than the support radius
+  std::vector<const Surface*> thinWalls;  ///< thinner than the support radius
+  std::vector<const Surface*>
+      barringWalls;  ///< that no move may pass through: thin ones, and those that move
   const GammaMethod* gammaMethod = nullptr;  ///< null: no correction
   SolverParameters parameters;
   Vec3f gravity = Vec3f::Zero();  ///< (m/s^2)

@@ -1,5 +1,7 @@
 #include "core/solver/thin_walls.h"
 
+#include <cmath>
+
 namespace migiwa {
 
 std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRadius) {
@@ -9,14 +11,23 @@ std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRad
   return thin;
 }
 
-Vec3f heldBack(const std::vector<const Surface*>& walls, const Vec3f& from, const Vec3f& to, float margin) {
+std::vector<const Surface*> barringWalls(const Boundary& boundary, float supportRadius) {
+  std::vector<const Surface*> barring = thinWalls(boundary, supportRadius);
+  for (const auto& wall : boundary.moving())
+    if (std::isfinite(wall->thickness()) && wall->thickness() >= supportRadius) barring.push_back(wall.get());
+  return barring;
+}
+
+Vec3f heldBack(const std::vector<const Surface*>& walls, const Vec3f& from, bool stepBegan, const Vec3f& to,
+               float margin) {
   Vec3f held = to, normal;
   for (const Surface* wall : walls) {
+    const Vec3f start = stepBegan ? wall->carried(from) : from;
     float entry = 0;
-    if (held == from || !wall->crosses(from, held, normal, entry)) continue;
+    if (held == start || !wall->crosses(start, held, normal, entry)) continue;
     Vec3f ignored;
-    if (wall->distance(from, ignored) < 0) continue;
-    const Vec3f meets = from + entry * (held - from);
+    if (wall->distance(start, ignored) < 0) continue;
+    const Vec3f meets = start + entry * (held - start);
     held += (margin - (held - meets).dot(normal)) * normal;
   }
   return held;

@@ -8,10 +8,14 @@ namespace migiwa {
 
 /// The walls of a boundary that are thinner than the support radius (m).
 std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRadius);
+/// Those, and the solids that move: they may come from one side of a particle to the other in one step.
+std::vector<const Surface*> barringWalls(const Boundary& boundary, float supportRadius);
 
 /// Where a move ends that thin walls bar: `margin` (m) before the wall that it meets, where it would have
-/// gone along the wall. A move that starts inside of a wall is left as it is.
-Vec3f heldBack(const std::vector<const Surface*>& walls, const Vec3f& from, const Vec3f& to, float margin);
+/// gone along the wall. A move that starts inside of a wall is left as it is. `from` is a place of the start
+/// of the step if `stepBegan`: what counts is the way relative to the wall, which has moved since.
+Vec3f heldBack(const std::vector<const Surface*>& walls, const Vec3f& from, bool stepBegan, const Vec3f& to,
+               float margin);
 
 namespace stages {
 

@@ -21,19 +21,24 @@ enum Pick : std::size_t { kProduct, kDirections };
 
 class AutoGamma final : public GammaMethod {
  public:
-  explicit AutoGamma(const GammaContext& context)
+  AutoGamma(const GammaContext& context, bool withGrid)
       : boundary_(context.boundary),
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
         methods_{makeProductGamma(context), nullptr},
         curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
                              [](const auto& surface) { return surface->planar(); })) {
-    if (std::unique_ptr<GridGamma> grid = makeAboutCurves(context)) {
+    if (std::unique_ptr<GridGamma> grid = withGrid ? makeAboutCurves(context) : nullptr) {
       grid_ = grid.get();
       methods_[kDirections] = std::move(grid);
     } else {
       methods_[kDirections] = makeDirectionsGamma(fine(context));
     }
+  }
+
+  void wallsMoved() override {
+    flat_ = FlatPlanes::of(boundary_, support_);
+    for (const auto& method : methods_) method->wallsMoved();
   }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
@@ -83,6 +88,9 @@ class AutoGamma final : public GammaMethod {
           "product, directions",
           "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
           "radius"};
+    const bool turn = std::any_of(boundary_.moving().begin(), boundary_.moving().end(),
+                                  [](const auto& wall) { return wall->motion().turns; });
+    if (turn) return {"product, directions", "by the walls in reach of each particle: planes, and some turn"};
     if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
     return {"product, directions", "by the walls in reach of each particle: planes at various angles"};
   }
@@ -156,8 +164,17 @@ class AutoGamma final : public GammaMethod {
 
 }  // namespace
 
+std::unique_ptr<GammaMethod> makeAutoGammaWithoutGrid(const GammaContext& context) {
+  return std::make_unique<AutoGamma>(context, false);
+}
+
 std::unique_ptr<GammaMethod> makeAutoGamma(const GammaContext& context) {
-  return std::make_unique<AutoGamma>(context);
+  const auto& surfaces = context.boundary.surfaces();
+  const bool curves =
+      std::any_of(surfaces.begin(), surfaces.end(), [](const auto& surface) { return !surface->planar(); });
+  // Closed forms follow planes wherever they go; a grid goes along with its wall.
+  if (context.boundary.moves() && curves) return makeMovingGamma(context, makeAutoGamma);
+  return std::make_unique<AutoGamma>(context, true);
 }
 
 }  // namespace migiwa

@@ -141,6 +141,7 @@ class BakedGamma final : public GridGamma {
 }  // namespace
 
 std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context) {
+  if (context.boundary.moves()) return makeMovingGamma(context, makeBakedGamma);
   auto method = std::make_unique<BakedGamma>(context);
   method->fill();
   return method;

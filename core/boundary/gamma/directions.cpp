@@ -27,6 +27,8 @@ class DirectionsGamma final : public GammaMethod {
         directions_(groupedDirections(context.directions)),
         flat_(FlatPlanes::of(boundary_, support_)) {}
 
+  void wallsMoved() override { flat_ = FlatPlanes::of(boundary_, support_); }
+
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     Scratch scratch;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -32,5 +32,11 @@ std::unique_ptr<GridGamma> makeBakedGammaIfQuick(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeMonteCarloGamma(const GammaContext& context);
 /// Picks among the others at every point, by the shapes in reach.
 std::unique_ptr<GammaMethod> makeAutoGamma(const GammaContext& context);
+/// The same without a grid: for walls that move, or of which some do.
+std::unique_ptr<GammaMethod> makeAutoGammaWithoutGrid(const GammaContext& context);
+/// Walls that move as one asked in their own frame, each by what `make` makes of them; where several frames
+/// are in reach, by makeAutoGammaWithoutGrid.
+std::unique_ptr<GammaMethod> makeMovingGamma(const GammaContext& context,
+                                             std::unique_ptr<GammaMethod> (*make)(const GammaContext&));
 
 }  // namespace migiwa

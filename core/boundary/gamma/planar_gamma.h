@@ -25,6 +25,8 @@ class PlanarGamma final : public GammaMethod {
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)) {}
 
+  void wallsMoved() override { flat_ = FlatPlanes::of(boundary_, support_); }
+
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     HalfSpaces walls;
     std::vector<KernelPart> parts;

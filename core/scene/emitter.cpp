@@ -1,0 +1,132 @@
+#include "core/scene/emitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <Eigen/Geometry>
+
+namespace migiwa {
+
+namespace {
+
+/// Places of a square lattice of unit cells within a disc, with a place or a corner of four cells at its
+/// centre: whichever of the two comes nearer to the disc's area.
+std::vector<std::array<double, 2>> discLattice(double radius) {
+  std::vector<std::array<double, 2>> best;
+  double least = INFINITY;
+  const int reach = static_cast<int>(std::ceil(radius)) + 1;
+  for (const double shift : {0.5, 0.0}) {
+    std::vector<std::array<double, 2>> places;
+    for (int i = -reach; i <= reach; ++i)
+      for (int j = -reach; j <= reach; ++j)
+        if (std::hypot(i + shift, j + shift) <= radius) places.push_back({i + shift, j + shift});
+    const double error = std::abs(static_cast<double>(places.size()) - std::numbers::pi * radius * radius);
+    if (places.empty() || error >= least) continue;
+    least = error;
+    best = std::move(places);
+  }
+  return best;
+}
+
+}  // namespace
+
+void Emitter::describe(FieldVisitor& visitor, double spacing) {
+  int picked = static_cast<int>(shape);
+  visitor.variant("shape", picked, kMouthShapeNames, {"", "Of its mouth.", Presence::required},
+                  [&](FieldVisitor& fields, int index) {
+                    shape = static_cast<MouthShape>(index);
+                    describeKeys(fields);
+                    check(fields, spacing);
+                  });
+}
+
+void Emitter::describeKeys(FieldVisitor& visitor) {
+  visitor.vector("center", center, {"m", "Of the mouth.", Presence::required});
+  if (shape == MouthShape::disc) {
+    visitor.number("radius", radius, Range::positive(kLargestCoordinate),
+                   {"m", "Of the mouth.", Presence::required});
+  } else {
+    visitor.pair("size", size, {"m", "Of the mouth, along x_axis and across.", Presence::required});
+    visitor.vector("x_axis", xAxis, {"1", "Direction of its first side; left out: any."});
+  }
+  visitor.vector("direction", direction,
+                 {"1", "In which the fluid leaves; any length but zero.", Presence::required});
+  visitor.number("speed", speed, Range::closed(0, 1e4),
+                 {"m/s", "Of the fluid at the mouth: volume a second over the area of the mouth."});
+  visitor.number("rate", rate, Range::closed(0, 1e9),
+                 {"m^3/s", "Instead of speed: volume that leaves in a second."});
+  visitor.number("start", start, Range::closed(0, 1e6), {"s", "When it begins."});
+  visitor.number("stop", stop, Range::closed(0, 1e6), {"s", "When it ends."});
+  visitor.integer("particles", particles, Range::closed(1, 2e9),
+                  {"1", "That it gives at most; then it runs dry."});
+}
+
+void Emitter::check(FieldVisitor& visitor, double spacing) {
+  if (visitor.sound({"direction"}) && direction.norm() < 1e-12) {
+    visitor.fault("direction", "expected a vector that is not zero, found [0, 0, 0]");
+    direction = -Vec3d::UnitY();
+  }
+  if (shape == MouthShape::rectangle && visitor.sound({"size"}) && (size[0] <= 0 || size[1] <= 0)) {
+    visitor.fault("size", "expected two lengths greater than 0, found one that is not");
+    size = {1, 1};
+  }
+  if (visitor.sound({"x_axis", "direction"}) && xAxis.norm() > 0 &&
+      xAxis.cross(direction).norm() < 1e-6 * xAxis.norm() * direction.norm())
+    visitor.fault("x_axis", "expected a direction across that of the fluid, found one along it");
+  if (visitor.sound({"speed", "rate"}) && (speed > 0) == (rate > 0)) {
+    visitor.fault("", std::string("expected either speed or rate, greater than 0, found ") +
+                          (speed > 0 ? "both" : "neither"));
+    speed = 1;
+  }
+  if (visitor.sound({"start", "stop"}) && stop <= start)
+    visitor.fault("stop", "expected a time after start, found an earlier one");
+  if (spacing > 0 && visitor.sound({"radius", "size"}) && mouthLayer(*this, spacing).places.empty())
+    visitor.fault("", "expected a mouth with room for a particle, found one smaller than particle_spacing");
+}
+
+double Emitter::area() const {
+  return shape == MouthShape::disc ? std::numbers::pi * radius * radius : size[0] * size[1];
+}
+
+double Emitter::count(double spacing, double time) const {
+  const double flowing = std::min(time, stop) - start;
+  if (flowing < 0) return 0;
+  const double volume = area() * (mouthSpeed() * flowing + 2 * spacing);
+  return std::min(volume / std::pow(spacing, 3), static_cast<double>(particles));
+}
+
+Bounds Emitter::bounds() const {
+  Bounds bounds;
+  for (const Vec3d& place : mouthLayer(*this, 0.25 * std::sqrt(area())).places) bounds.include(place);
+  return bounds;
+}
+
+MouthLayer mouthLayer(const Emitter& emitter, double spacing) {
+  const Vec3d ahead = emitter.direction.normalized();
+  const Vec3d along = emitter.xAxis - emitter.xAxis.dot(ahead) * ahead;
+  const Vec3d x = along.norm() > 0 ? Vec3d(along.normalized()) : ahead.unitOrthogonal();
+  const Vec3d y = ahead.cross(x);
+  MouthLayer layer;
+  if (emitter.shape == MouthShape::disc) {
+    // The lattice is drawn out or in by as much as its places differ from the area.
+    const auto places = discLattice(emitter.radius / spacing);
+    const double cell = std::sqrt(emitter.area() / std::max<double>(static_cast<double>(places.size()), 1));
+    for (const auto& [i, j] : places) layer.places.emplace_back(emitter.center + cell * (i * x + j * y));
+  } else {
+    const auto cells = [&](double length) { return std::lround(length / spacing); };
+    const long columns = cells(emitter.size[0]), rows = cells(emitter.size[1]);
+    for (long j = 0; j < rows; ++j) {
+      for (long i = 0; i < columns; ++i) {
+        const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(columns) - 0.5;
+        const double v = (static_cast<double>(j) + 0.5) / static_cast<double>(rows) - 0.5;
+        layer.places.emplace_back(emitter.center + u * emitter.size[0] * x + v * emitter.size[1] * y);
+      }
+    }
+  }
+  layer.thickness = static_cast<double>(layer.places.size()) * std::pow(spacing, 3) / emitter.area();
+  return layer;
+}
+
+}  // namespace migiwa

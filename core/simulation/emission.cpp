@@ -1,0 +1,98 @@
+#include "core/simulation/emission.h"
+
+#include <algorithm>
+#include <string>
+
+namespace migiwa {
+
+namespace {
+
+/// Makes room for `size` particles and some more, so that layers do not move the buffers one by one.
+void makeRoom(StepState& state, std::size_t size) {
+  if (size <= state.particles.id.capacity()) return;
+  const std::size_t room = size + size / 2 + 1024;
+  state.particles.position.reserve(room);
+  state.particles.velocity.reserve(room);
+  state.particles.id.reserve(room);
+  const std::size_t withGhost = room + NeighbourLists::kScratchExtra;
+  state.current.reserve(withGhost);
+  state.previous.reserve(withGhost);
+  state.paired.reserve(withGhost);
+  state.spareIds.reserve(room);
+  state.wallSlot.reserve(room);
+  state.gamma.reserve(room);
+  state.density.reserve(room);
+  state.lambda.reserve(room);
+}
+
+}  // namespace
+
+Emission::Emission(Scene& scene, const Boundary& boundary) : given_(scene.emitters.size()) {
+  const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
+  for (std::size_t k = 0; k < scene.emitters.size(); ++k) {
+    const Emitter& emitter = scene.emitters[k];
+    MouthLayer layer = mouthLayer(emitter, scene.particleSpacing);
+    const auto barred = std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
+      return boundary.distance(place.cast<float>()) < margin;
+    });
+    if (barred > 0) {
+      scene.warnings.push_back("/emitters/" + std::to_string(k) + ": " + std::to_string(barred) + " of the " +
+                               std::to_string(layer.places.size()) +
+                               " particles of a layer lie within or too near the walls");
+    }
+    const double interval = layer.thickness / emitter.mouthSpeed();
+    mouths_.push_back(
+        {emitter, std::move(layer), emitter.mouthSpeed() * emitter.direction.normalized(), interval});
+  }
+}
+
+void Emission::addLayer(const Mouth& mouth, double age, StepState& state) {
+  Particles& particles = state.particles;
+  makeRoom(state, particles.size() + mouth.layer.places.size());
+  const bool slots = state.wallSlot.size() == particles.size();
+  for (const Vec3d& place : mouth.layer.places) {
+    particles.position.emplace_back(Vec3f((place + age * mouth.velocity).cast<float>()));
+    particles.velocity.emplace_back(Vec3f(mouth.velocity.cast<float>()));
+    particles.id.push_back(static_cast<std::uint32_t>(particles.id.size()));
+    if (slots) state.wallSlot.push_back(StepState::kNoWall);
+  }
+}
+
+void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
+  for (std::size_t k = 0; k < mouths_.size(); ++k) {
+    const Mouth& mouth = mouths_[k];
+    EmitterState& given = given_[k];
+    const auto layer = static_cast<std::int64_t>(mouth.layer.places.size());
+    while (true) {
+      const double leaves = mouth.emitter.start + static_cast<double>(given.layers) * mouth.interval;
+      if (leaves > time || leaves >= mouth.emitter.stop) break;
+      if (given.particles + layer > mouth.emitter.particles) {
+        statistics.note("emitter_limit", statistics.steps,
+                        "/emitters/" + std::to_string(k) + " has given the " +
+                            std::to_string(given.particles) + " particles that it may give");
+        break;
+      }
+      addLayer(mouth, time - leaves, state);
+      ++given.layers;
+      given.particles += layer;
+    }
+  }
+}
+
+void Emission::visit(StateVisitor& visitor) {
+  if (empty()) return;
+  visitor.array("emitters/given", given_);
+  if (given_.size() != mouths_.size())
+    throw StateError("the state of " + std::to_string(mouths_.size()) + " emitters, found that of " +
+                     std::to_string(given_.size()));
+}
+
+double Emission::largestSpeed(double from, double to) const {
+  double speed = 0;
+  for (const Mouth& mouth : mouths_)
+    if (mouth.emitter.start <= to && mouth.emitter.stop > from)
+      speed = std::max(speed, mouth.emitter.mouthSpeed());
+  return speed;
+}
+
+}  // namespace migiwa

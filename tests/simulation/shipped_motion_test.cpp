@@ -1,0 +1,126 @@
+// The shipped scenes with walls that move and with emitters, held against what physics says of them.
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/scene/scene_reader.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+namespace {
+
+Scene shipped(const std::string& name, const std::vector<Override>& overrides = {}) {
+  return readScene(MIGIWA_SOURCE_DIR "/scenes/" + name + ".json", overrides);
+}
+
+/// Wave number (1/m) of waves with this period on water of this depth: w^2 = g k tanh(k d), by Newton.
+double waveNumber(double period, double depth) {
+  const double w2 = std::pow(2 * std::numbers::pi / period, 2), g = 9.81;
+  double k = w2 / g;
+  for (int round = 0; round < 50; ++round) {
+    const double t = std::tanh(k * depth);
+    k -= (g * k * t - w2) / (g * t + g * k * depth * (1 - t * t));
+  }
+  return k;
+}
+
+/// Depth of water (m) at a place along the channel, by the volume of the particles about it.
+double depthAt(const FrameView& view, double x, double spacing, double width) {
+  constexpr double kHalf = 0.08;
+  double volume = 0;
+  for (const Float4& p : view.positions)
+    if (std::abs(static_cast<double>(p.x) - x) < kHalf) volume += std::pow(spacing, 3);
+  return volume / (2 * kHalf * width);
+}
+
+TEST(WaveMachine, WavesTravelAtTheSpeedOfLinearTheory) {
+  const Scene scene = shipped("wave_machine");
+  const Motion& motion = *scene.surfaces.at(1)->motion;
+  const double period = motion.period, w = 2 * std::numbers::pi / period, depth = 0.4;
+  Simulation simulation(scene, 2);
+  // Whole periods, after the waves have come and before they are back from the beach.
+  const std::vector<double> places{1.0, 1.25, 1.5, 1.75, 2.0};
+  std::vector<std::complex<double>> component(places.size());
+  const double from = 2 * period, to = 4 * period;
+  int samples = 0;
+  while (simulation.time() < to - 1e-9) {
+    simulation.advanceFrame();
+    if (simulation.time() <= from + 1e-9) continue;
+    ++samples;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      component[k] += depthAt(simulation.view(), places[k], scene.particleSpacing, 0.4) *
+                      std::polar(1.0, -w * simulation.time());
+  }
+  EXPECT_FALSE(simulation.statistics().failed());
+  // cos(w t - k x): the phase falls by k from metre to metre.
+  double sum = 0;
+  for (std::size_t k = 1; k < places.size(); ++k) sum -= std::arg(component[k] / component[k - 1]);
+  const double measured = sum / (places.back() - places.front());
+  EXPECT_NEAR(measured, waveNumber(period, depth), 0.1 * waveNumber(period, depth))
+      << "speed " << w / measured << " m/s instead of " << w / waveNumber(period, depth);
+  // A piston of stroke S makes waves of height S 2 (cosh 2kd - 1) / (sinh 2kd + 2kd) (Dean & Dalrymple 1991).
+  // The solver damps them on the way: what arrives is less than that, and a good part of it.
+  const double kd = waveNumber(period, depth) * depth;
+  const double ratio = 2 * (std::cosh(2 * kd) - 1) / (std::sinh(2 * kd) + 2 * kd);
+  const double amplitude = 2 * std::abs(component[0]) / samples;
+  EXPECT_LT(amplitude, 1.05 * ratio * motion.amplitude.x());
+  EXPECT_GT(amplitude, 0.5 * ratio * motion.amplitude.x());
+  RecordProperty("speed", std::to_string(w / measured) + " m/s, linear theory " +
+                              std::to_string(w / waveNumber(period, depth)));
+}
+
+TEST(StirredTank, TurnsWithThePlateAndComesToRestAfterIt) {
+  const Scene scene = shipped("stirred_tank", {{"/boundary/surfaces/1/motion/stop", "1.5"}});
+  Simulation simulation(scene, 2);
+  const auto momentum = [&] {
+    const FrameView view = simulation.view();
+    double sum = 0;
+    for (std::size_t i = 0; i < view.positions.size(); ++i) {
+      const Vec3d r = view.positions[i].xyz().cast<double>() - Vec3d(0.625, 0, 0.625);
+      sum += r.cross(Vec3d(view.velocities[i].xyz().cast<double>())).y();
+    }
+    return sum / static_cast<double>(view.positions.size());
+  };
+  double before = 0;
+  for (int k = 0; k < 3; ++k) {
+    while (simulation.time() < 0.5 * (k + 1) - 1e-9) simulation.advanceFrame();
+    EXPECT_GT(momentum(), before) << "the plate adds to it, at " << simulation.time() << " s";
+    before = momentum();
+  }
+  // Rigid rotation of a square of this side: w a^2 / 6.
+  EXPECT_LT(before, 150 * std::numbers::pi / 180 * 1.25 * 1.25 / 6);
+  while (simulation.time() < 2.5) simulation.advanceFrame();
+  EXPECT_LT(momentum(), 0.5 * before) << "a plate that stands brakes";
+  EXPECT_FALSE(simulation.statistics().failed());
+  EXPECT_EQ(simulation.statistics().maxPenetration, 0);
+}
+
+TEST(Faucet, FillsTheBowlAtItsRate) {
+  // Coarser than shipped, and fuller sooner.
+  const Scene scene = shipped("faucet", {{"/particle_spacing", "0.03"}, {"/emitters/0/stop", "1.5"}});
+  Simulation simulation(scene, 2);
+  while (simulation.time() < 2.5 - 1e-9) simulation.advanceFrame();
+  EXPECT_FALSE(simulation.statistics().failed());
+  const FrameView view = simulation.view();
+  const double volume = static_cast<double>(view.positions.size()) * std::pow(scene.particleSpacing, 3);
+  const Emitter& emitter = scene.emitters.at(0);
+  EXPECT_NEAR(volume, 1.5 * emitter.rate,
+              emitter.area() * mouthLayer(emitter, scene.particleSpacing).thickness * 1.01);
+  // All of it in the bowl, whose inner wall is a sphere of 0.365 m: a cap of that volume is so deep.
+  const double radius = 0.4 - 0.035;
+  double low = 0, high = radius;
+  for (int round = 0; round < 60; ++round) {
+    const double d = 0.5 * (low + high);
+    (std::numbers::pi * d * d * (3 * radius - d) / 3 < volume ? low : high) = d;
+  }
+  // Its centre of mass lies 3 (2 R - d)^2 / 4 (3 R - d) below the centre of the sphere.
+  const double expected = -3 * std::pow(2 * radius - low, 2) / (4 * (3 * radius - low));
+  double sum = 0;
+  for (const Float4& p : view.positions) sum += static_cast<double>(p.y);
+  EXPECT_NEAR(sum / static_cast<double>(view.positions.size()), expected, 0.01);
+}
+
+}  // namespace
+}  // namespace migiwa
