@@ -47,8 +47,8 @@ GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float suppo
   take(width * rows, std::copysign(2 * (reach_ + around), shape_->distance(grid_.origin, ignored)));
   pool.run(rows, [&](std::size_t row) {
     for (std::size_t x = 0; x < width; ++x) {
-      const Vec3f index(static_cast<float>(x), static_cast<float>(row % height),
-                        static_cast<float>(row / height));
+      const std::size_t y = row % height, z = row / height;
+      const Vec3f index(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
       Vec3f normal;
       take(row * width + x,
            shape_->distance(grid_.origin + grid_.blockEdge() * index + Vec3f::Constant(half), normal));

@@ -119,8 +119,8 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
   grid.blocks.resize(rows * width);
   pool.run(rows, [&](std::size_t row) {
     for (std::size_t x = 0; x < width; ++x) {
-      const Vec3f index(static_cast<float>(x), static_cast<float>(row % height),
-                        static_cast<float>(row / height));
+      const std::size_t y = row % height, z = row / height;
+      const Vec3f index(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
       grid.blocks[row * width + x] = kindOf(grid.origin + grid.blockEdge() * index + Vec3f::Constant(half));
     }
   });

@@ -88,8 +88,8 @@ class BakedGamma final : public GridGamma {
   static Boundary exactWalls(const Boundary& boundary) {
     std::vector<std::shared_ptr<const Surface>> surfaces;
     for (const auto& surface : boundary.surfaces()) {
-      std::shared_ptr<const Surface> exact = surface->exact();
-      surfaces.push_back(exact ? std::move(exact) : surface);
+      const std::shared_ptr<const Surface> exact = surface->exact();
+      surfaces.push_back(exact != nullptr ? exact : surface);
     }
     return Boundary::atRest(std::move(surfaces));
   }

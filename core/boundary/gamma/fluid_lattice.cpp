@@ -80,7 +80,7 @@ class BlockDistances {
   }
 
   void corners(int x, int y, int z, float (&d)[8]) const {
-    const float* from = distances_ + (z * kSide + y) * kSide + x;
+    const float* from = distances_ + cubeIndex(x, y, z, kSide, kSide);
     for (std::size_t corner = 0; corner < 8; ++corner)
       d[corner] = from[(corner >> 2U) * kSide * kSide + (corner >> 1U & 1U) * kSide + (corner & 1U)];
   }
@@ -191,7 +191,7 @@ void FluidLattice::fill(const Boundary& boundary, const Vec3f& first, Values& va
         for (int corner = 0; corner < 8; ++corner) {
           const int px = x - 1 + (corner & 1), py = y - 1 + (corner >> 1 & 1), pz = z - 1 + (corner >> 2);
           if (px < 0 || py < 0 || pz < 0 || px >= kPoints || py >= kPoints || pz >= kPoints) continue;
-          values[static_cast<std::size_t>((pz * kPoints + py) * kPoints + px)] += parts[corner];
+          values[cubeIndex(px, py, pz, kPoints, kPoints)] += parts[corner];
         }
       }
     }
@@ -214,16 +214,15 @@ bool FluidLattice::window(const BlockPlace& place, Window& out) const {
   const auto pointOf = [](int k) { return (k - kReach + kAround * kPoints) % kPoints; };
   for (int z = 0; z < kSide; ++z) {
     for (int y = 0; y < kSide; ++y) {
-      float* row = &out[static_cast<std::size_t>((z * kSide + y) * kStride)];
+      float* row = &out[cubeIndex(0, y, z, kSide, kStride)];
       for (int x = 0; x < kSide;) {
         const std::int32_t block = at({place[0] + blockOf(x), place[1] + blockOf(y), place[2] + blockOf(z)});
         const int point = pointOf(x), count = std::min(kPoints - point, kSide - x);
         if (block < 0) {
           std::fill(row + x, row + x + count, block == kFluid ? 1.0F : 0.0F);
         } else {
-          const float* from =
-              &values_[static_cast<std::size_t>(block)]
-                      [static_cast<std::size_t>((pointOf(z) * kPoints + pointOf(y)) * kPoints + point)];
+          const Values& values = values_[static_cast<std::size_t>(block)];
+          const float* from = &values[cubeIndex(point, pointOf(y), pointOf(z), kPoints, kPoints)];
           std::copy(from, from + count, row + x);
         }
         x += count;

@@ -13,6 +13,12 @@
 
 namespace migiwa {
 
+/// The place of (x, y, z) in an array of cubes of `side` rows of `stride`.
+constexpr std::size_t cubeIndex(int x, int y, int z, int side, int stride) {
+  const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(side) + static_cast<std::size_t>(y);
+  return row * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
+}
+
 class FluidLattice {
  public:
   /// Points of the lattice along a block.

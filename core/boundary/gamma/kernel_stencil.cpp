@@ -14,11 +14,11 @@ namespace {
 class Cube {
  public:
   explicit Cube(int reach)
-      : reach_(reach), side_(2 * reach + 1), values_(static_cast<std::size_t>(side_ * side_ * side_), 0.0) {}
+      : reach_(reach), side_(2 * reach + 1), values_(cubeIndex(0, 0, side_, side_, side_), 0.0) {}
 
   int reach() const { return reach_; }
   double& at(int x, int y, int z) {
-    return values_[static_cast<std::size_t>(((z + reach_) * side_ + y + reach_) * side_ + x + reach_)];
+    return values_[cubeIndex(x + reach_, y + reach_, z + reach_, side_, side_)];
   }
   double get(int x, int y, int z) const {
     if (std::abs(x) > reach_ || std::abs(y) > reach_ || std::abs(z) > reach_) return 0;
@@ -56,10 +56,10 @@ double underTent(int x, int y, int z) {
 
 }  // namespace
 
-KernelStencil kernelStencil(KernelType type) {
+KernelStencil kernelStencil(KernelType kernelType) {
   constexpr int kReach = KernelStencil::kReach;
   Cube under(kReach);
-  withKernel(type, [&](auto kernel) {
+  withKernel(kernelType, [&](auto kernel) {
     // One of eight octants, the others by symmetry.
     for (int z = 0; z <= kReach; ++z) {
       for (int y = 0; y <= kReach; ++y) {
@@ -94,9 +94,8 @@ KernelStencil kernelStencil(KernelType type) {
   KernelStencil stencil;
   stencil.weights.fill(0);
   weights.forEach([&](int x, int y, int z, double& weight) {
-    stencil.weights[static_cast<std::size_t>(
-        ((z + kReach) * KernelStencil::kSide + y + kReach) * KernelStencil::kStride + x + kReach)] =
-        static_cast<float>(weight / sum);
+    stencil.weights[cubeIndex(x + kReach, y + kReach, z + kReach, KernelStencil::kSide,
+                              KernelStencil::kStride)] = static_cast<float>(weight / sum);
   });
   return stencil;
 }

@@ -19,6 +19,6 @@ struct KernelStencil {
   std::array<float, std::size_t{kSide} * kSide * kStride> weights;
 };
 
-KernelStencil kernelStencil(KernelType kernel);
+KernelStencil kernelStencil(KernelType kernelType);
 
 }  // namespace migiwa
