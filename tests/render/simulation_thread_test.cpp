@@ -65,7 +65,7 @@ TEST_F(SimulationThreadTest, PlaysAndPauses) {
 }
 
 TEST_F(SimulationThreadTest, SettingsHoldFromTheNextFrameAndAfterAReset) {
-  Settings settings{scene_.solver, scene_.boundary};
+  Settings settings{scene_.solver, scene_.boundary, scene_.effects};
   settings.boundary.handling = BoundaryHandling::none;
   simulation_.apply(settings);
   simulation_.step();
@@ -78,7 +78,7 @@ TEST_F(SimulationThreadTest, SettingsHoldFromTheNextFrameAndAfterAReset) {
 
 TEST_F(SimulationThreadTest, WishesFromAnotherThreadWhileItPlays) {
   simulation_.play();
-  Settings settings{scene_.solver, scene_.boundary};
+  Settings settings{scene_.solver, scene_.boundary, scene_.effects};
   for (int i = 0; i < 200; ++i) {
     settings.solver.maxIterations = 2 + i % 5;
     simulation_.apply(settings);
