@@ -36,7 +36,7 @@ class Drawing {
     for (const std::string& warning : scene.warnings)
       std::cerr << options_.scene << ": warning: " << warning << '\n';
 
-    Viewer viewer(scene, simulation.wireframe(),
+    Viewer viewer(scene, simulation.walls(),
                   {scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note});
     describe(viewer, scene.view.color);
     {

@@ -1,4 +1,4 @@
-// `migiwa slim MESH --out FILE.json`: fits a SLIM surface to a mesh or an oriented point cloud.
+// `migiwa slim MESH --out FILE.json`: fits a SLIM surface to a mesh or an oriented point cloud, and draws it.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +11,8 @@
 
 #include "app/commands/command.h"
 #include "app/commands/fault_collector.h"
+#include "app/commands/slim_picture.h"
+#include "app/render/png.h"
 #include "core/base/error.h"
 #include "core/io/output_file.h"
 #include "core/slim/slim_file.h"
@@ -26,6 +28,11 @@ struct SlimOptions {
   std::optional<int> nodes;
 };
 
+/// Beside the surface's file.
+std::filesystem::path pictureFile(const SlimOptions& options) {
+  return std::filesystem::path(options.out).replace_extension(".png");
+}
+
 /// What was given, or every fault of it.
 ImportedShape checkedShape(const SlimOptions& options, const CommonOptions& common) {
   FaultCollector collect;
@@ -34,11 +41,25 @@ ImportedShape checkedShape(const SlimOptions& options, const CommonOptions& comm
   if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance <= 1e6))
     collect.add({"--tolerance",
                  "expected a number in (0, 1e+06] (unit: m), found " + std::to_string(*options.tolerance)});
+  if (pictureFile(options) == options.out)
+    collect.add({"--out", "expected a name that does not end in .png, which its picture will have; found " +
+                              options.out});
   collect([&] { requireWritable(options.out, "--out"); });
   std::optional<ImportedShape> shape;
   collect([&] { shape = importShape(options.mesh); });
   collect.raise();
   return *std::move(shape);
+}
+
+/// A machine without EGL goes without the picture.
+void drawPicture(const SlimOptions& options, const SlimData& data, ThreadPool& pool) {
+  const std::filesystem::path file = pictureFile(options);
+  try {
+    writeTextFile(file, encodePng(drawSlim(data, pool)));
+    std::printf("picture          %s\n", file.c_str());
+  } catch (const MissingError& error) {
+    std::cerr << "note: no picture " << file.string() << ": " << error.what() << '\n';
+  }
 }
 
 int fit(const SlimOptions& options, const CommonOptions& common) {
@@ -67,6 +88,7 @@ int fit(const SlimOptions& options, const CommonOptions& common) {
       "time             %.2f s\n",
       data.nodes.size(), data.degree, data.statistics.largest,
       data.statistics.largest / shape.bounds().size().norm(), data.statistics.mean, seconds);
+  drawPicture(options, data, pool);
   return kDone;
 }
 
@@ -79,7 +101,9 @@ Command slimCommand() {
                 .add_option("mesh", options->mesh, "OBJ, PLY, STL, ...: triangles, or points with normals.")
                 ->required()
                 ->type_name("MESH");
-            parser.add_option("--out", options->out, "Where the surface goes.")
+            parser
+                .add_option("--out", options->out,
+                            "Where the surface goes; a picture of it, FILE.png, beside it.")
                 ->required()
                 ->type_name("FILE.json");
             parser.add_option("--degree", options->degree, "Degree of the polynomials.")

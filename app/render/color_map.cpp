@@ -11,25 +11,27 @@ struct Point {
   double a, b;
 };
 
-/// The path through Oklab's colour plane: a cubic Bezier curve whose every point lies inside sRGB at its
-/// lightness.
-Point pathPoint(double t) {
-  static constexpr std::array<Point, 4> kControl{
-      {{-0.004, -0.125}, {-0.06, -0.06}, {-0.175, 0.05}, {-0.036, 0.168}}};
+/// The control points of a path through Oklab's colour plane: a cubic Bezier curve whose every point lies
+/// inside sRGB at its lightness.
+using Path = std::array<Point, 4>;
+constexpr Path kCoolPath{{{-0.004, -0.125}, {-0.06, -0.06}, {-0.175, 0.05}, {-0.036, 0.168}}};
+constexpr Path kWarmPath{{{0.065, -0.075}, {0.215, -0.045}, {0.165, 0.115}, {0.0, 0.085}}};
+
+Point pathPoint(const Path& path, double t) {
   const double s = 1 - t;
   const std::array<double, 4> weight{s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
   Point p{0, 0};
-  for (std::size_t k = 0; k < 4; ++k) p.a += weight[k] * kControl[k].a, p.b += weight[k] * kControl[k].b;
+  for (std::size_t k = 0; k < 4; ++k) p.a += weight[k] * path[k].a, p.b += weight[k] * path[k].b;
   return p;
 }
 
 /// The path's points at equal distances along it.
-std::vector<Point> evenPoints(int count) {
+std::vector<Point> evenPoints(const Path& path, int count) {
   constexpr int kPieces = 4096;
   std::vector<double> length{0};
-  Point last = pathPoint(0);
+  Point last = pathPoint(path, 0);
   for (int i = 1; i <= kPieces; ++i) {
-    const Point p = pathPoint(static_cast<double>(i) / kPieces);
+    const Point p = pathPoint(path, static_cast<double>(i) / kPieces);
     length.push_back(length.back() + std::hypot(p.a - last.a, p.b - last.b));
     last = p;
   }
@@ -38,7 +40,7 @@ std::vector<Point> evenPoints(int count) {
     const double wanted = length.back() * i / (count - 1);
     const auto after = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
     const double piece = static_cast<double>(after - length.begin() - 1);
-    points.push_back(pathPoint((piece + (wanted - after[-1]) / (after[0] - after[-1])) / kPieces));
+    points.push_back(pathPoint(path, (piece + (wanted - after[-1]) / (after[0] - after[-1])) / kPieces));
   }
   return points;
 }
@@ -59,16 +61,24 @@ Rgb8 fromOklab(double lightness, const Point& p) {
           encode(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-}  // namespace
-
-ColorMap makeColorMap() {
-  const std::vector<Point> path = evenPoints(kColorMapSize);
+ColorMap makeMap(const Path& bends) {
+  const std::vector<Point> path = evenPoints(bends, kColorMapSize);
   ColorMap map{};
   for (std::size_t i = 0; i < map.size(); ++i) {
     const double t = static_cast<double>(i) / (kColorMapSize - 1);
     map[i] = fromOklab(kColorMapDarkest + (kColorMapLightest - kColorMapDarkest) * t, path[i]);
   }
   return map;
+}
+
+}  // namespace
+
+ColorMap makeColorMap() {
+  return makeMap(kCoolPath);
+}
+
+ColorMap makeWarmColorMap() {
+  return makeMap(kWarmPath);
 }
 
 }  // namespace migiwa

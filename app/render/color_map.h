@@ -1,6 +1,7 @@
-// Our colour map: dark blue, teal, green, yellow. Built in Oklab (Ottosson 2020) so that equal steps of the
-// value look equally far apart: lightness rises linearly, and the path through the colour plane is walked at
-// constant speed.
+// Our colour maps. Of particles: dark blue, teal, green, yellow. Built in Oklab (Ottosson 2020) so that equal
+// steps of the value look equally far apart: lightness rises linearly, and the path through the colour plane
+// is walked at constant speed. Of SLIM nodes: the same from plum over red and orange to a pale yellow, so
+// that it is never taken for the particles'.
 #pragma once
 
 #include <array>
@@ -18,5 +19,6 @@ inline constexpr double kColorMapDarkest = 0.32;
 inline constexpr double kColorMapLightest = 0.92;
 
 ColorMap makeColorMap();
+ColorMap makeWarmColorMap();
 
 }  // namespace migiwa

@@ -28,7 +28,8 @@ GroundPass::GroundPass(const Ground& ground)
   plane_.set("shadowArea", f(-half), f(-half), f(2 * half), f(2 * half));
 }
 
-void GroundPass::draw(std::span<const Float4> spheres, float radius, const Vec3d& eye) {
+void GroundPass::draw(std::span<const Float4> spheres, float radius, std::span<const Float4> patches,
+                      const Vec3d& eye) {
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glDisable(GL_BLEND);
@@ -37,7 +38,7 @@ void GroundPass::draw(std::span<const Float4> spheres, float radius, const Vec3d
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   if (ground_.heightOf(eye) <= 0) return;
 
-  const std::span<const float> shadow = shadow_.compute(spheres, radius);
+  const std::span<const float> shadow = shadow_.compute(spheres, radius, patches);
   glTextureSubImage2D(shadowMap_.name(), 0, 0, 0, GroundShadow::kSize, GroundShadow::kSize, GL_RED, GL_FLOAT,
                       shadow.data());
   glBindTextureUnit(1, shadowMap_.name());

@@ -12,8 +12,8 @@ namespace migiwa {
 class GroundPass {
  public:
   explicit GroundPass(const Ground& ground);
-  /// `spheres` throw the shadow; the ground is not drawn from below.
-  void draw(std::span<const Float4> spheres, float radius, const Vec3d& eye);
+  /// `spheres` and `patches` throw the shadow (GroundShadow); the ground is not drawn from below.
+  void draw(std::span<const Float4> spheres, float radius, std::span<const Float4> patches, const Vec3d& eye);
 
  private:
   Ground ground_;

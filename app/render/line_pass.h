@@ -1,10 +1,10 @@
-// The walls' lines, anti-aliased, a fixed number of pixels wide.
+// Lines of walls, anti-aliased, a fixed number of pixels wide.
 #pragma once
 
 #include <span>
 
 #include "app/render/shader_program.h"
-#include "core/boundary/surface.h"
+#include "core/boundary/wall_drawing.h"
 
 namespace migiwa {
 
@@ -13,7 +13,8 @@ class LinePass {
   LinePass();
   /// From now on draws these.
   void set(std::span<const LineSegment> lines);
-  void draw(float widthPixels) const;
+  /// Where an opaque line is made of short segments, these do not show.
+  void draw(float widthPixels, float alpha) const;
 
  private:
   ShaderProgram program_;

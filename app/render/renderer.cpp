@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "app/render/frame_uniforms.h"
+#include "app/render/section_lines.h"
 
 namespace migiwa {
 namespace {
@@ -40,6 +43,27 @@ FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderT
   return uniforms;
 }
 
+/// Whether the clip plane cuts away what is at p.
+bool isCut(const Shot& shot, const Vec3f& p) {
+  return shot.clip.enabled &&
+         clipSide(shot) * (static_cast<double>(p[static_cast<Eigen::Index>(shot.clip.axis)]) - shot.clip.at) >
+             0;
+}
+
+/// The triangles that face the ground, with the area that each covers of it.
+std::vector<Float4> groundPatches(std::span<const WallMesh> meshes, const Vec3f& up) {
+  std::vector<Float4> patches;
+  for (const WallMesh& mesh : meshes) {
+    const float side = mesh.vessel ? -1.0F : 1.0F;
+    for (const auto& [a, b, c] : mesh.surface.triangles) {
+      const Vec3f &p = mesh.surface.vertices[a], &q = mesh.surface.vertices[b], &r = mesh.surface.vertices[c];
+      const float covered = -side * 0.5F * up.dot((q - p).cross(r - p));
+      if (covered > 0) patches.emplace_back((p + q + r) / 3, covered);
+    }
+  }
+  return patches;
+}
+
 }  // namespace
 
 Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
@@ -47,24 +71,52 @@ Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
       spherePass_(colors),
       groundPass_(ground_),
       uniforms_(makeBuffer()) {
-  linePass_.set(surroundings.walls);
+  setWalls(surroundings.walls);
   glNamedBufferStorage(uniforms_.name(), sizeof(FrameUniforms), nullptr, GL_DYNAMIC_STORAGE_BIT);
+}
+
+void Renderer::setWalls(const WallDrawing& walls) {
+  linePass_.set(walls.lines);
+  meshes_ = walls.meshes;
+  surfacePass_.set(meshes_);
+  patches_ = groundPatches(meshes_, ground_.up.cast<float>());
+  sectionOf_ = {};
+  nodePass_.set(walls.nodes);
 }
 
 void Renderer::collectSpheres(const FrameView& frame, const Shot& shot) {
   colorFieldValues(frame, shot.color, values_);
   const auto low = static_cast<float>(shot.colorRange[0]);
   const auto scale = static_cast<float>(1 / (shot.colorRange[1] - shot.colorRange[0]));
-  const auto side = static_cast<float>(clipSide(shot));
-  const auto at = static_cast<float>(shot.clip.at);
   spheres_.clear();
   for (std::size_t i = 0; i < frame.positions.size(); ++i) {
     const Vec3f p = frame.positions[i].xyz();
-    if (!p.allFinite()) continue;
-    if (shot.clip.enabled && side * (p[static_cast<Eigen::Index>(shot.clip.axis)] - at) > 0) continue;
+    if (!p.allFinite() || isCut(shot, p)) continue;
     const float value = (values_[i] - low) * scale;
     spheres_.emplace_back(p, value > 0 ? std::min(value, 1.0F) : 0.0F);  // 0 for what is not a number, too
   }
+}
+
+void Renderer::collectPatches(const Shot& shot) {
+  shownPatches_.clear();
+  if (!shot.walls) return;
+  for (const Float4& patch : patches_)
+    if (!isCut(shot, patch.xyz())) shownPatches_.push_back(patch);
+}
+
+void Renderer::drawSection(const Shot& shot, float width) {
+  if (!shot.clip.enabled || meshes_.empty()) return;
+  const double side = clipSide(shot);
+  if (!sectionOf_.enabled || sectionOf_.axis != shot.clip.axis || sectionOf_.at != shot.clip.at ||
+      sectionSide_ != side) {
+    // A hair behind the plane, on what it leaves.
+    const double at = shot.clip.at - side * 1e-5 * ground_.extent;
+    sectionPass_.set(
+        sectionLines(meshes_, static_cast<Eigen::Index>(shot.clip.axis), static_cast<float>(at)));
+    sectionOf_ = shot.clip;
+    sectionSide_ = side;
+  }
+  sectionPass_.draw(width, 1);
 }
 
 void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget& target) {
@@ -78,13 +130,23 @@ void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget
 
   if (frame.info.walls && frame.info.walls != movedWalls_) {
     movedWalls_ = frame.info.walls;
-    linePass_.set(*movedWalls_);
+    setWalls(*movedWalls_);
   }
   collectSpheres(frame, shot);
+  collectPatches(shot);
   const float radius = 0.5F * frame.info.spacing;
-  groundPass_.draw(spheres_, radius, shot.camera.eye);
+  groundPass_.draw(spheres_, radius, shownPatches_, shot.camera.eye);
   spherePass_.draw(spheres_, radius);
-  if (shot.walls) linePass_.draw(std::max(1.2F, static_cast<float>(target.height()) / 480));
+  if (!shot.walls) return;
+  const float width = std::max(1.2F, static_cast<float>(target.height()) / 480);
+  if (shot.nodes) {
+    nodePass_.draw();
+  } else {
+    surfacePass_.drawOpaque();
+    drawSection(shot, 1.4F * width);
+  }
+  linePass_.draw(width, 0.9F);
+  if (!shot.nodes) surfacePass_.drawGlass();
 }
 
 }  // namespace migiwa

@@ -1,5 +1,6 @@
-// Draws a frame of a simulation as a scene: ground, particles, walls. Knows frame views and cameras, nothing
-// of the solver, of panels, or of windows. The target's context must be current for its whole life.
+// Draws a frame of a simulation as a scene: ground, particles, walls as lines, surfaces or nodes. Knows frame
+// views and cameras, nothing of the solver, of panels, or of windows. The target's context must be current
+// for its whole life.
 #pragma once
 
 #include <memory>
@@ -8,9 +9,11 @@
 
 #include "app/render/ground_pass.h"
 #include "app/render/line_pass.h"
+#include "app/render/node_pass.h"
 #include "app/render/projection.h"
 #include "app/render/render_target.h"
 #include "app/render/sphere_pass.h"
+#include "app/render/surface_pass.h"
 #include "core/simulation/frame_view.h"
 
 namespace migiwa {
@@ -19,7 +22,7 @@ namespace migiwa {
 struct Surroundings {
   Bounds bounds;
   Vec3d up = Vec3d::UnitY();
-  std::vector<LineSegment> walls;
+  WallDrawing walls;
 };
 
 /// How one picture is taken.
@@ -29,7 +32,8 @@ struct Shot {
   ColorField color = ColorField::density;
   std::array<double, 2> colorRange{0, 1};
   bool walls = true;
-  Rect scene;  ///< the part of the target that shows the scene
+  bool nodes = false;  ///< the nodes of SLIM walls in place of their surfaces
+  Rect scene;          ///< the part of the target that shows the scene
 };
 
 class Renderer {
@@ -40,19 +44,28 @@ class Renderer {
   void draw(const FrameView& frame, const Shot& shot, const RenderTarget& target);
 
   const Ground& ground() const { return ground_; }
+  const NodePass& nodes() const { return nodePass_; }
 
  private:
+  void setWalls(const WallDrawing& walls);
   void collectSpheres(const FrameView& frame, const Shot& shot);
+  void collectPatches(const Shot& shot);
+  void drawSection(const Shot& shot, float width);
 
   Ground ground_;
+  std::vector<WallMesh> meshes_;
+  std::vector<Float4> patches_;  ///< of the meshes that face the ground (GroundShadow)
+  ClipPlane sectionOf_;          ///< what sectionPass_ holds the outline of
+  double sectionSide_ = 0;
   SpherePass spherePass_;
-  LinePass linePass_;
+  SurfacePass surfacePass_;
+  NodePass nodePass_;
+  LinePass linePass_, sectionPass_;
   GroundPass groundPass_;
   GlBuffer uniforms_;
-  std::shared_ptr<const std::vector<LineSegment>>
-      movedWalls_;  ///< that linePass_ shows; null: those of the start
+  std::shared_ptr<const WallDrawing> movedWalls_;  ///< that linePass_ shows; null: those of the start
   std::vector<float> values_;
-  std::vector<Float4> spheres_;
+  std::vector<Float4> spheres_, shownPatches_;
 };
 
 }  // namespace migiwa

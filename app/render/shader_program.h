@@ -18,6 +18,7 @@ class ShaderProgram {
 
   void use() const { glUseProgram(program_.name()); }
   GLint uniform(const char* name) const { return glGetUniformLocation(program_.name(), name); }
+  void set(const char* name, int value) const { glProgramUniform1i(program_.name(), uniform(name), value); }
   void set(const char* name, float value) const { glProgramUniform1f(program_.name(), uniform(name), value); }
   void set(const char* name, float x, float y) const {
     glProgramUniform2f(program_.name(), uniform(name), x, y);

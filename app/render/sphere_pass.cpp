@@ -1,18 +1,14 @@
 #include "app/render/sphere_pass.h"
 
+#include "app/render/color_texture.h"
+
 namespace migiwa {
 
 SpherePass::SpherePass(const ColorMap& colors)
     : program_("sphere"),
-      colors_(makeTexture(GL_TEXTURE_1D)),
+      colors_(makeColorTexture(colors)),
       spheres_(makeBuffer()),
       layout_(makeVertexArray()) {
-  glTextureStorage1D(colors_.name(), 1, GL_SRGB8, kColorMapSize);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage1D(colors_.name(), 0, 0, kColorMapSize, GL_RGB, GL_UNSIGNED_BYTE, colors.data());
-  glTextureParameteri(colors_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(colors_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-
   glVertexArrayVertexBuffer(layout_.name(), 0, spheres_.name(), 0, sizeof(Float4));
   glVertexArrayBindingDivisor(layout_.name(), 0, 1);
   glEnableVertexArrayAttrib(layout_.name(), 0);

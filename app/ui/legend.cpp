@@ -21,21 +21,37 @@ void drawMap(ImDrawList* draw, const ColorMap& colors, ImVec2 corner, float widt
   }
 }
 
+/// Lengths (pixels) that follow from the size of the text.
+struct Layout {
+  float size, margin, padding, barHeight, line, tickLength;
+
+  explicit Layout(const Fonts& fonts)
+      : size(fonts.regular->FontSize),
+        margin(std::round(0.6F * size)),
+        padding(std::round(0.7F * size)),
+        barHeight(std::round(0.8F * size)),
+        line(std::round(1.4F * size)),
+        tickLength(std::round(0.3F * size)) {}
+  float height() const { return line + barHeight + tickLength + line + std::round(0.9F * padding); }
+};
+
 }  // namespace
+
+int legendHeight(const Fonts& fonts) {
+  const Layout layout(fonts);
+  return static_cast<int>(layout.height() + layout.margin);
+}
 
 void drawLegend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
                 const Rect& area, const Fonts& fonts) {
-  const float size = fonts.regular->FontSize;
-  const float margin = std::round(0.6F * size), padding = std::round(0.7F * size);
+  const auto [size, margin, padding, barHeight, line, tickLength] = Layout(fonts);
   const float room = static_cast<float>(area.width) - 2 * (margin + padding);
-  const float barWidth = std::floor(std::min(17 * size, room)), barHeight = std::round(0.8F * size);
+  const float barWidth = std::floor(std::min(17 * size, room));
   if (barWidth < 4 * size) return;
-  const float line = std::round(1.4F * size), tickLength = std::round(0.3F * size);
 
   const ImVec2 end{static_cast<float>(area.x + area.width) - margin,
                    static_cast<float>(area.y + area.height) - margin};
-  const ImVec2 corner{end.x - barWidth - 2 * padding,
-                      end.y - (line + barHeight + tickLength + line) - std::round(0.9F * padding)};
+  const ImVec2 corner{end.x - barWidth - 2 * padding, end.y - Layout(fonts).height()};
   ImDrawList* draw = ImGui::GetBackgroundDrawList();
   draw->AddRectFilled(corner, end, theme::kPaper, 0.35F * size);
   draw->AddRect(corner, end, theme::kPaperEdge, 0.35F * size);

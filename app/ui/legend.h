@@ -10,6 +10,9 @@
 
 namespace migiwa {
 
+/// Of a legend and the margin below it (pixels).
+int legendHeight(const Fonts& fonts);
+
 /// Draws it in the bottom right corner of `area`.
 void drawLegend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
                 const Rect& area, const Fonts& fonts);

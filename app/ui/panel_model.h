@@ -26,6 +26,7 @@ struct ViewState {
   ClipPlane clip;
   ColorField color = ColorField::density;
   bool walls = true;
+  bool nodes = false;  ///< of SLIM walls, in place of their surfaces
   bool panels = true;
 };
 
@@ -44,6 +45,7 @@ struct PanelModel {
   Bounds bounds;  ///< of the scene (m)
   Settings& settings;
   ViewState& view;
+  bool hasNodes;  ///< some wall has nodes to show
   Wishes& wishes;
   SceneEditor* editor;  ///< null: the scene's text is not offered
 };

@@ -143,6 +143,10 @@ void Ui::legend(const ColorFieldInfo& field, const std::array<double, 2>& range,
   drawLegend(field, range, colors, area, state_->fonts);
 }
 
+int Ui::legendHeight() const {
+  return migiwa::legendHeight(state_->fonts);
+}
+
 void Ui::end(bool draw) {
   ImGui::Render();
   if (draw) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -30,6 +30,8 @@ class Ui {
   void caption(const Caption& caption, const Rect& area) const;
   void legend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
               const Rect& area) const;
+  /// Of a legend and the margin below it (pixels).
+  int legendHeight() const;
   /// Ends the frame and draws it, or only lays it out.
   void end(bool draw);
 

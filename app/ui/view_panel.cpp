@@ -30,6 +30,13 @@ void viewPanel(PanelModel& model) {
   ImGui::SliderScalar("##at", ImGuiDataType_Double, &view.clip.at, &low, &high, "%.3f m");
   ImGui::EndDisabled();
 
+  if (model.hasNodes) {
+    rowLabel("Nodes");
+    ImGui::Checkbox("##nodes", &view.nodes);
+    ImGui::SameLine();
+    faintText("the balls of SLIM walls");
+  }
+
   const float width = buttonWidth(2);
   if (ImGui::Button("Reset camera", {width, 0})) view.camera = model.scene.view.camera;
   ImGui::SameLine();

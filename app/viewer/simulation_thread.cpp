@@ -21,7 +21,7 @@ SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
       pace_(pace),
       simulation_(std::make_unique<Simulation>(scene, threads)),
       scene_(simulation_->scene()),
-      walls_(simulation_->wireframe()) {
+      walls_(simulation_->walls()) {
   finished_.assign(simulation_->view());
   hasFrame_ = true;
   thread_ = std::thread([this] { work(); });

@@ -41,7 +41,7 @@ class SimulationThread {
   /// The scene as it was filled, with the warnings of that.
   const Scene& scene() const { return scene_; }
   /// Walls for drawing.
-  const std::vector<LineSegment>& walls() const { return walls_; }
+  const WallDrawing& walls() const { return walls_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -60,7 +60,7 @@ class SimulationThread {
   Clock::time_point due_{};
 
   const Scene scene_;
-  const std::vector<LineSegment> walls_;
+  const WallDrawing walls_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDoubleClickSeconds = 0.3;
 
-Surroundings surroundings(const Scene& scene, std::vector<LineSegment> walls) {
+Surroundings surroundings(const Scene& scene, WallDrawing walls) {
   Surroundings result{scene.bounds(), scene.view.camera.up, std::move(walls)};
   if (scene.gravity.norm() > 0) result.up = -scene.gravity;
   return result;
@@ -33,13 +33,13 @@ double scaleFor(int width, int height) {
   return std::clamp(std::min(width / 1280.0, height / 720.0), 0.8, 4.0);
 }
 
-Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerOptions& options)
+Viewer::Viewer(const Scene& scene, WallDrawing walls, const ViewerOptions& options)
     : scene_(scene),
       options_(options),
       bounds_(scene.bounds()),
       referenceSpeed_(referenceSpeed(scene)),
       settings_{scene.solver, scene.boundary, scene.effects},
-      view_{scene.view.camera, scene.view.clip, scene.view.color, true, options.panels},
+      view_{scene.view.camera, scene.view.clip, scene.view.color, true, scene.view.nodes, options.panels},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
       ui_(options.scale) {
   takeView();
@@ -48,12 +48,13 @@ Viewer::Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerO
 void Viewer::takeView() {
   view_.camera = scene_.view.camera;
   view_.clip = scene_.view.clip;
+  view_.nodes = scene_.view.nodes;
   view_.color = scene_.view.color;
   // A cut that is switched on later begins in the middle.
   if (!view_.clip.enabled) view_.clip.at = bounds_.center()[static_cast<Eigen::Index>(view_.clip.axis)];
 }
 
-void Viewer::replaceScene(const Scene& scene, std::optional<std::vector<LineSegment>> walls) {
+void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) {
   const bool viewChanged = !(scene.view == scene_.view);
   scene_ = scene;
   settings_ = {scene.solver, scene.boundary, scene.effects};
@@ -87,7 +88,8 @@ Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputSt
   last_ = input;
 
   target_->beginScene();
-  const Shot shot{view_.camera, view_.clip, view_.color, colorRange(view_.color), view_.walls, area};
+  const Shot shot{view_.camera, view_.clip,  view_.color, colorRange(view_.color),
+                  view_.walls,  view_.nodes, area};
   renderer_.draw(frame, shot, *target_);
   target_->beginOverlay();
   ui_.end(true);
@@ -104,9 +106,15 @@ Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& 
   Wishes wishes;
   ui_.caption(caption(frame, run), area);
   ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
+  const NodePass& nodes = renderer_.nodes();
+  if (view_.walls && view_.nodes && !nodes.empty()) {
+    Rect above = area;
+    above.height -= ui_.legendHeight();
+    ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
+  }
   if (view_.panels) {
-    PanelModel model{frame.info, run,   options_.timings, scene_,         bounds_,
-                     settings_,  view_, wishes,           options_.editor};
+    PanelModel model{frame.info, run,   options_.timings, scene_, bounds_,
+                     settings_,  view_, !nodes.empty(),   wishes, options_.editor};
     ui_.panels(model, area.height);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }

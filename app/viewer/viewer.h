@@ -28,11 +28,11 @@ double scaleFor(int width, int height);
 
 class Viewer {
  public:
-  Viewer(const Scene& scene, std::vector<LineSegment> walls, const ViewerOptions& options);
+  Viewer(const Scene& scene, WallDrawing walls, const ViewerOptions& options);
 
   /// Takes over a changed scene. The camera and what else a person has turned stay, unless the scene's own
   /// view has changed. `walls`: of a scene that begins anew; nothing: the same ones, only parameters changed.
-  void replaceScene(const Scene& scene, std::optional<std::vector<LineSegment>> walls);
+  void replaceScene(const Scene& scene, std::optional<WallDrawing> walls);
 
   /// Draws one frame and returns what the user asked for.
   Wishes frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width, int height);

@@ -47,6 +47,8 @@ class GriddedSurface final : public Surface {
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
     shape_->wireframe(scene, out);
   }
+  WallMesh mesh() const override { return shape_->mesh(); }
+  void drawnNodes(std::vector<WallNode>& out) const override { shape_->drawnNodes(out); }
   const BoxGeometry* tank() const override { return shape_->tank(); }
 
  private:

@@ -105,6 +105,22 @@ void MovingSurface::wireframe(const Bounds& scene, std::vector<LineSegment>& out
   for (std::size_t k = before; k < out.size(); ++k) out[k] = {toWorld(out[k].from), toWorld(out[k].to)};
 }
 
+WallMesh MovingSurface::mesh() const {
+  WallMesh mesh = rest_->mesh();
+  for (Vec3f& vertex : mesh.surface.vertices) vertex = toWorld(vertex);
+  for (Vec3f& normal : mesh.normals) normal = directionToWorld(normal);
+  return mesh;
+}
+
+void MovingSurface::drawnNodes(std::vector<WallNode>& out) const {
+  const std::size_t before = out.size();
+  rest_->drawnNodes(out);
+  for (std::size_t k = before; k < out.size(); ++k) {
+    out[k].centre = toWorld(out[k].centre);
+    out[k].normal = directionToWorld(out[k].normal);
+  }
+}
+
 Bounds moved(const Bounds& bounds, const Pose& pose) {
   Bounds result;
   if (bounds.empty()) return result;

@@ -42,6 +42,8 @@ class MovingSurface final : public Surface {
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
+  WallMesh mesh() const override;
+  void drawnNodes(std::vector<WallNode>& out) const override;
 
  private:
   std::shared_ptr<const Surface> rest_;

@@ -94,6 +94,14 @@ struct Kept {
 
 }  // namespace
 
+const SlimMesh& SlimWallData::drawnMesh() const {
+  std::call_once(extracted_, [this] {
+    ThreadPool pool(0);
+    mesh_ = extractSlimMesh(*model, pool);
+  });
+  return mesh_;
+}
+
 bool SlimSource::operator==(const SlimSource& other) const {
   return kind == other.kind && file == other.file && bowl.center == other.bowl.center &&
          bowl.radius == other.bowl.radius && bowl.thickness == other.bowl.thickness &&

@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/slim/bowl.h"
 #include "core/slim/slim_fitting.h"
+#include "core/slim/slim_mesh.h"
 
 namespace migiwa {
 
@@ -31,6 +33,13 @@ struct SlimSource {
 struct SlimWallData {
   std::unique_ptr<const SlimModel> model;
   std::vector<std::string> notes;  ///< of the import
+
+  /// The surface for pictures, extracted when it is first asked for.
+  const SlimMesh& drawnMesh() const;
+
+ private:
+  mutable std::once_flag extracted_;
+  mutable SlimMesh mesh_;
 };
 
 /// Reads, fits and prepares; throws InputError when the file does not allow it.

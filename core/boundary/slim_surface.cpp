@@ -1,7 +1,6 @@
 #include "core/boundary/slim_surface.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/base/error.h"
 #include "core/slim/slim_rays.h"
@@ -169,20 +168,23 @@ Bounds SlimSurface::bounds() const {
   return data_ ? data_->model->bounds() : Bounds{};
 }
 
-void SlimSurface::wireframe(const Bounds&, std::vector<LineSegment>& out) const {
-  constexpr std::size_t kMostDiscs = 2500;
-  constexpr int kCorners = 8;
-  const auto& nodes = data_->model->nodes();
-  const std::size_t step = 1 + nodes.size() / kMostDiscs;
-  for (std::size_t k = 0; k < nodes.size(); k += step) {
-    const SlimNode& node = nodes[k];
-    const auto corner = [&](int i) {
-      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kCorners;
-      const float reach = kSlimCore * node.radius;
-      return Vec3f(node.centre + node.coefficients[0] * node.normal + reach * std::cos(angle) * node.tangent +
-                   reach * std::sin(angle) * node.bitangent());
-    };
-    for (int i = 0; i < kCorners; ++i) out.push_back({corner(i), corner(i + 1)});
+WallMesh SlimSurface::mesh() const {
+  const SlimMesh& drawn = data_->drawnMesh();
+  WallMesh mesh{drawn.surface, drawn.normals, holdsFluid()};
+  if (holdsFluid()) {
+    for (Vec3f& normal : mesh.normals) normal = -normal;
+    for (auto& corners : mesh.surface.triangles) std::swap(corners[1], corners[2]);
+  }
+  return mesh;
+}
+
+void SlimSurface::drawnNodes(std::vector<WallNode>& out) const {
+  for (const SlimNode& node : data_->model->nodes()) {
+    const Vec3f tilted =
+        (node.normal - node.coefficients[1] * node.tangent - node.coefficients[2] * node.bitangent())
+            .normalized();
+    out.push_back({node.centre + node.coefficients[0] * node.normal, holdsFluid() ? Vec3f(-tilted) : tilted,
+                   node.radius, kSlimCore * node.radius, holdsFluid()});
   }
 }
 

@@ -28,8 +28,10 @@ class SlimSurface : public Surface {
   /// One for each node whose centre is nearer than `reach`, with that as its foot point: [FM] Eq. 14.
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   Bounds bounds() const override;
-  /// Discs of the nodes' cores, thinned where there are many.
-  void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
+  /// Nothing: the mesh shows it.
+  void wireframe(const Bounds&, std::vector<LineSegment>&) const override {}
+  WallMesh mesh() const override;
+  void drawnNodes(std::vector<WallNode>& out) const override;
 
  protected:
   void describeFluid(FieldVisitor& visitor);

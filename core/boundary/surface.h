@@ -17,6 +17,7 @@
 #include "core/base/types.h"
 #include "core/boundary/directions.h"
 #include "core/boundary/motion.h"
+#include "core/boundary/wall_drawing.h"
 
 namespace migiwa {
 
@@ -31,10 +32,6 @@ struct WallPiece {
 enum class PieceRule {
   fluidInsideAll,  ///< the fluid is the intersection of the pieces' fluid sides: a tank
   solidInsideAll,  ///< the solid is the intersection of the pieces' solid sides: a block
-};
-
-struct LineSegment {
-  Vec3f from, to;
 };
 
 /// A box tank as the settled measures need it: axes, extents, and whether the fluid is inside.
@@ -108,6 +105,10 @@ class Surface {
   virtual Bounds bounds() const = 0;
   /// Lines that show the wall; `scene` bounds what an infinite wall draws.
   virtual void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const = 0;
+  /// The wall as a mesh to shade; empty where lines show it well enough.
+  virtual WallMesh mesh() const { return {}; }
+  /// Appends the balls that a SLIM surface is made of.
+  virtual void drawnNodes(std::vector<WallNode>&) const {}
   /// Non-null for a box that holds the fluid.
   virtual const BoxGeometry* tank() const { return nullptr; }
 };

@@ -203,6 +203,9 @@ void describeView(FieldVisitor& visitor, View& view, bool& cameraPresent) {
                       {"m", "Its place on the axis.", Presence::required});
       },
       &view.clip.enabled);
+  visitor.boolean(
+      "nodes", view.nodes,
+      {"", "Show SLIM walls as discs, one for each of their balls, coloured by the ball's radius."});
   visitor.choice("color", view.color, kColorFieldNames, {"", "The quantity that colours the particles."});
   visitor.pair(
       "color_range", view.colorRange,

@@ -41,6 +41,7 @@ struct ClipPlane {
 struct View {
   Camera camera;
   ClipPlane clip;
+  bool nodes = false;  ///< SLIM walls as the discs of their nodes instead of their surface
   ColorField color = ColorField::density;
   bool hasColorRange = false;
   std::array<double, 2> colorRange{

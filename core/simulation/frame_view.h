@@ -10,7 +10,7 @@
 
 #include "core/base/stage_times.h"
 #include "core/base/types.h"
-#include "core/boundary/surface.h"
+#include "core/boundary/wall_drawing.h"
 #include "core/scene/color_field.h"
 #include "core/solver/iteration_error.h"
 
@@ -27,8 +27,8 @@ struct FrameInfo {
   StageTimes stages;                   ///< of the last frame (s)
   double stepSeconds = 0;              ///< wall time of the last frame's mean substep
   std::uint64_t stateHash = 0;
-  /// Where some walls move: the lines of all of them as they are now. Null where all stand still.
-  std::shared_ptr<const std::vector<LineSegment>> walls;
+  /// Where some walls move: all of them as they are now. Null where all stand still.
+  std::shared_ptr<const WallDrawing> walls;
 };
 
 struct FrameView {

@@ -112,8 +112,7 @@ Simulation::Simulation(Scene scene, int threads)
   }
   state.health = inspect(state.step, state.limits);
   state.info.stateHash = stateHash();
-  if (state.boundary.moves())
-    state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
+  if (state.boundary.moves()) state.info.walls = std::make_shared<const WallDrawing>(walls());
 }
 
 Simulation::~Simulation() = default;
@@ -199,8 +198,7 @@ void Simulation::advanceFrame() {
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
   state.describeFrame();
-  if (state.boundary.moves())
-    state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
+  if (state.boundary.moves()) state.info.walls = std::make_shared<const WallDrawing>(walls());
 }
 
 long Simulation::frameAt(double time) const {
@@ -275,11 +273,11 @@ void Simulation::visitState(StateVisitor& visitor) {
   if (!state.boundary.moves()) return;
   // Where walls are follows from the time.
   state.moveWalls(state.time, state.time);
-  state.info.walls = std::make_shared<const std::vector<LineSegment>>(wireframe());
+  state.info.walls = std::make_shared<const WallDrawing>(walls());
 }
 
-std::vector<LineSegment> Simulation::wireframe() const {
-  std::vector<LineSegment> lines;
+WallDrawing Simulation::walls() const {
+  WallDrawing walls;
   Bounds bounds = state_->scene.bounds();
   if (bounds.empty()) {
     // Nothing finite to go by: what the camera looks at.
@@ -287,8 +285,13 @@ std::vector<LineSegment> Simulation::wireframe() const {
     bounds.include(camera.target);
     bounds = bounds.grown(0.4 * (camera.eye - camera.target).norm());
   }
-  for (const auto& surface : state_->boundary.surfaces()) surface->wireframe(bounds, lines);
-  return lines;
+  for (const auto& surface : state_->boundary.surfaces()) {
+    surface->wireframe(bounds, walls.lines);
+    WallMesh mesh = surface->mesh();
+    if (!mesh.surface.triangles.empty()) walls.meshes.push_back(std::move(mesh));
+    surface->drawnNodes(walls.nodes);
+  }
+  return walls;
 }
 
 }  // namespace migiwa

@@ -53,7 +53,7 @@ class Simulation {
   /// no further use.
   void visitState(StateVisitor& visitor);
   /// Walls for drawing, where they are now.
-  std::vector<LineSegment> wireframe() const;
+  WallDrawing walls() const;
 
  private:
   struct State;

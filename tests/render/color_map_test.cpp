@@ -65,5 +65,17 @@ TEST(ColorMapTest, RunsFromDarkBlueOverTealAndGreenToYellow) {
   for (std::size_t i = 8; i < map.size(); i += 8) EXPECT_LT(hue(i), hue(i - 8)) << "entry " << i;
 }
 
+TEST(ColorMapTest, WarmMapIsAsEvenAndNeverBlueOrGreen) {
+  const ColorMap map = makeWarmColorMap();
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    EXPECT_NEAR(toOklab(map[i]).lightness, 0.32 + 0.60 * static_cast<double>(i) / 255, 0.0035)
+        << "entry " << i;
+    EXPECT_GE(map[i][0], map[i][1]) << "entry " << i;
+    if (i > 40) {
+      EXPECT_GT(map[i][0], map[i][2]) << "entry " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace migiwa

@@ -36,7 +36,7 @@ std::vector<fs::path> sceneFiles() {
 
 Image picture(const Simulation& simulation, const Scene& scene, bool panels,
               const ColorMap& colors = makeColorMap()) {
-  Viewer viewer(scene, simulation.wireframe(), {scaleFor(kWidth, kHeight), panels, false, "", colors});
+  Viewer viewer(scene, simulation.walls(), {scaleFor(kWidth, kHeight), panels, false, "", colors});
   return viewer.takePicture(simulation.view(), RunStatus{}, kWidth, kHeight);
 }
 

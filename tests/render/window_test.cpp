@@ -13,13 +13,12 @@ namespace migiwa {
 namespace {
 
 Image pictureIn(const Simulation& simulation, bool panels) {
-  Viewer viewer(simulation.scene(), simulation.wireframe(), {scaleFor(640, 360), panels, false});
+  Viewer viewer(simulation.scene(), simulation.walls(), {scaleFor(640, 360), panels, false});
   return viewer.takePicture(simulation.view(), RunStatus{}, 640, 360);
 }
 
-TEST(WindowTest, DrawsTheSameBytesAsEgl) {
-  Simulation simulation(readScene(MIGIWA_SOURCE_DIR "/scenes/dam_break.json"));
-  for (int i = 0; i < 40; ++i) simulation.advanceFrame();
+/// In a window and off-screen, with panels and without.
+void expectSameBytes(const Simulation& simulation) {
   for (const bool panels : {false, true}) {
     Image offScreen, inWindow;
     {
@@ -31,6 +30,38 @@ TEST(WindowTest, DrawsTheSameBytesAsEgl) {
       inWindow = pictureIn(simulation, panels);
     }
     EXPECT_EQ(offScreen.rgba, inWindow.rgba) << (panels ? "with" : "without") << " panels";
+  }
+}
+
+TEST(WindowTest, DrawsTheSameBytesAsEgl) {
+  Simulation simulation(readScene(MIGIWA_SOURCE_DIR "/scenes/dam_break.json"));
+  for (int i = 0; i < 40; ++i) simulation.advanceFrame();
+  expectSameBytes(simulation);
+}
+
+/// A bowl, cut, as a surface and as nodes; and one whose wall holds the fluid, as glass.
+TEST(WindowTest, DrawsSurfacesAndNodesWithTheSameBytesAsEgl) {
+  for (const bool nodes : {false, true}) {
+    Scene scene = parseScene(R"({
+      "format": 1, "particle_spacing": 0.1,
+      "fluid": [{"shape": "sphere", "center": [0, -0.3, 0], "radius": 0.4}],
+      "boundary": {"handling": "none", "surfaces": [
+        {"shape": "slim", "fluid": "outside", "bowl": {"center": [0, 0, 0], "radius": 1, "thickness": 0.2}, "nodes": 600}
+      ]},
+      "view": {"clip": {"axis": "z", "at": 0.1}}
+    })",
+                             "bowl.json");
+    scene.view.nodes = nodes;
+    expectSameBytes(Simulation(scene));
+    if (nodes) continue;
+    scene = parseScene(R"({
+      "format": 1, "particle_spacing": 0.1,
+      "boundary": {"handling": "none", "surfaces": [
+        {"shape": "slim", "fluid": "inside", "bowl": {"center": [0, 0, 0], "radius": 1, "thickness": 0.2}, "nodes": 600}
+      ]}
+    })",
+                       "vessel.json");
+    expectSameBytes(Simulation(scene));
   }
 }
 

@@ -34,7 +34,7 @@ constexpr std::string_view kFull = R"({
     "cfm_epsilon": 2, "kernel": "cubic_spline", "support_ratio": 2.5, "position_step": "paper", "rest_density": 900 },
   "effects": { "viscosity": {} },
   "view": { "camera": { "eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_degrees": 30 },
-    "clip": { "axis": "x", "at": 0.25 }, "color": "speed", "color_range": [0, 3] }
+    "clip": { "axis": "x", "at": 0.25 }, "nodes": true, "color": "speed", "color_range": [0, 3] }
 })";
 
 TEST(SceneReader, ReadsEveryKey) {
@@ -82,6 +82,7 @@ TEST(SceneReader, ReadsEveryKey) {
   EXPECT_TRUE(scene.view.clip.enabled);
   EXPECT_EQ(scene.view.clip.axis, Axis::x);
   EXPECT_EQ(scene.view.clip.at, 0.25);
+  EXPECT_TRUE(scene.view.nodes);
   EXPECT_EQ(scene.view.color, ColorField::speed);
   EXPECT_TRUE(scene.view.hasColorRange);
   EXPECT_EQ(scene.view.colorRange[1], 3);

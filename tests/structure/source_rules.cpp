@@ -59,7 +59,7 @@ const Border kBorders[] = {
     {"app/render/",
      {"core/"},
      {"core/base/", "core/scene/scene.h", "core/simulation/frame_view.h", "core/scene/color_field.h",
-      "core/boundary/surface.h"},
+      "core/boundary/wall_drawing.h"},
      "the renderer sees a scene's view and a frame view, never the solver"},
     {"app/platform/", {"core/"}, {"core/base/"}, "a context knows nothing of fluids"},
     {"app/ui/",
