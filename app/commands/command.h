@@ -39,6 +39,7 @@ Command checkCommand();
 Command gammaCommand();
 Command summaryCommand();
 Command slimCommand();
+Command studyCommand();
 Command schemaCommand();
 
 }  // namespace migiwa

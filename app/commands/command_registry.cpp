@@ -3,8 +3,8 @@
 namespace migiwa {
 
 std::vector<Command> allCommands() {
-  return {viewCommand(),  renderCommand(),  simulateCommand(), checkCommand(),
-          gammaCommand(), summaryCommand(), slimCommand(),     schemaCommand()};
+  return {viewCommand(),    renderCommand(), simulateCommand(), checkCommand(), gammaCommand(),
+          summaryCommand(), slimCommand(),   studyCommand(),    schemaCommand()};
 }
 
 }  // namespace migiwa

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <sstream>
 
+#include "app/commands/gnuplot.h"
 #include "app/render/color_map.h"
-#include "core/base/error.h"
 
 namespace migiwa {
 
@@ -53,22 +52,15 @@ std::string panelData(const MapWindow& window, const MapPanel& panel, int number
   return out.str();
 }
 
-struct PipeCloser {
-  void operator()(std::FILE* pipe) const { pclose(pipe); }
-};
-
 }  // namespace
 
 void plotMaps(const std::filesystem::path& png, const MapWindow& window, const std::vector<MapPanel>& panels,
               std::size_t perRow, double largestError) {
   const std::size_t columns = std::min(perRow, panels.size());
   const std::size_t rows = (panels.size() + columns - 1) / columns;
-  const std::filesystem::path temporary = png.string() + ".tmp";
   std::ostringstream script;
   for (std::size_t k = 0; k < panels.size(); ++k) script << panelData(window, panels[k], static_cast<int>(k));
-  script << "set terminal pngcairo size " << 470 * columns << ',' << 430 * rows << " font 'DejaVu Sans,11'\n"
-         << "set output '" << temporary.string() << "'\n"
-         << "set multiplot layout " << rows << ',' << columns << '\n'
+  script << "set multiplot layout " << rows << ',' << columns << '\n'
          << "set size ratio -1\nset xlabel '" << kAxisLabels.at(static_cast<std::size_t>(window.across))
          << "' offset 0,0.3\nset ylabel '" << kAxisLabels.at(static_cast<std::size_t>(window.up))
          << "' offset 0.5,0\n"
@@ -89,20 +81,9 @@ void plotMaps(const std::filesystem::path& png, const MapWindow& window, const s
   }
   script << "unset multiplot\n";
 
-  const std::string text = script.str();
-  int status = -1;
-  {
-    std::unique_ptr<std::FILE, PipeCloser> pipe(popen("gnuplot 2>/dev/null", "w"));
-    if (pipe) {
-      std::fwrite(text.data(), 1, text.size(), pipe.get());
-      status = pclose(pipe.release());
-    }
-  }
-  if (status != 0 || !std::filesystem::exists(temporary)) {
-    std::filesystem::remove(temporary);
-    throw MissingError("the map's picture needs gnuplot; install gnuplot-nox (apt-get install gnuplot-nox)");
-  }
-  std::filesystem::rename(temporary, png);
+  std::ostringstream terminal;
+  terminal << "pngcairo size " << 470 * columns << ',' << 430 * rows << " font 'DejaVu Sans,11'";
+  drawWithGnuplot(png, terminal.str(), script.str());
 }
 
 }  // namespace migiwa

@@ -82,7 +82,7 @@ struct Library {
 
 const Library kLibraries[] = {
     {"nlohmann/",
-     {{"core/scene/"}, {"core/io/"}, {"core/slim/", 1}, {"app/commands/"}, {"tests/"}},
+     {{"core/scene/"}, {"core/io/"}, {"core/slim/", 1}, {"core/study/"}, {"app/commands/"}, {"tests/"}},
      "JSON is read and written at the rim"},
     {"CLI/", {{"app/commands/"}, {"app/command_line."}, {"tests/"}}, "the command line ends in app/commands"},
     {"assimp/",

@@ -1,0 +1,224 @@
+// `migiwa study SCENE --vary /pointer=a,b,c --out DIR`: what accuracy costs in time.
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+#include "app/commands/progress_bar.h"
+#include "app/commands/study_job.h"
+#include "app/commands/study_plot.h"
+#include "app/commands/study_summary.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/io/output_file.h"
+#include "core/study/run_record.h"
+#include "core/study/study_run.h"
+#include "core/study/table.h"
+
+namespace migiwa {
+
+namespace {
+
+class Study {
+ public:
+  Study(const StudyOptions& options, const CommonOptions& common)
+      : options_(options), common_(common), job_(checkedStudyJob(options, common)) {}
+
+  int run() {
+    if (options_.list) return list();
+    records_.resize(job_.plan.size());
+    load(job_.folder);
+    std::filesystem::create_directories(job_.folder / "runs");
+    if (options_.merge.empty()) {
+      simulate();
+      // One of many: the others may be at work elsewhere, on the same folder.
+      if (options_.run)
+        return records_[static_cast<std::size_t>(*options_.run) - 1]->trouble.empty() ? kDone
+                                                                                      : kNumericalTrouble;
+    } else {
+      merge();
+    }
+    return finish();
+  }
+
+ private:
+  int list() const {
+    for (std::size_t run = 1; run <= job_.plan.size(); ++run) {
+      std::cout << run;
+      const std::vector<std::string> values = job_.plan.values(run);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        std::cout << '\t' << job_.plan.axes[k].pointer << '=' << values[k];
+      std::cout << '\n';
+    }
+    return kDone;
+  }
+
+  /// Takes what is in a study's folder; all that does not belong to this study is a fault.
+  void load(const std::filesystem::path& folder) {
+    std::vector<Fault> faults;
+    const int threads = ThreadPool(common_.threads).threads();
+    for (std::size_t run = 1; run <= job_.plan.size(); ++run) {
+      try {
+        const std::filesystem::path file = recordFile(folder, run);
+        std::optional<RunRecord> record = readRecord(file);
+        if (!record) continue;
+        if (record->fingerprint != runFingerprint(job_.plan, run))
+          throw InputError(file.string(), "expected run " + std::to_string(run) +
+                                              " of this study, found one of another: the scene, --set, "
+                                              "--vary or --until differ; take another --out");
+        if (options_.merge.empty() && record->threads != threads && pending(*record))
+          throw InputError(file.string(), "expected times with " + std::to_string(threads) +
+                                              " threads, found " + std::to_string(record->threads) +
+                                              "; go on with --threads " + std::to_string(record->threads) +
+                                              ", or take another --out");
+        std::optional<RunRecord>& known = records_[run - 1];
+        if (!known || known->timings.size() < record->timings.size()) known = std::move(record);
+      } catch (const InputError& error) {
+        faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+      }
+    }
+    // Of a larger study, or of one with other values.
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "runs", none)) {
+      const std::string name = entry.path().stem().string();
+      if (entry.path().extension() != ".json" || name.empty() ||
+          name.find_first_not_of("0123456789") != std::string::npos || name.size() > 6)
+        continue;
+      if (std::stoul(name) > job_.plan.size())
+        faults.push_back({entry.path().string(), "expected runs 1 to " + std::to_string(job_.plan.size()) +
+                                                     " of this study, found one of another; take another "
+                                                     "--out"});
+    }
+    if (!faults.empty()) throw InputError(std::move(faults));
+  }
+
+  bool pending(const RunRecord& record) const {
+    return record.trouble.empty() && record.timings.size() < static_cast<std::size_t>(options_.repeat);
+  }
+
+  /// Round by round, each beginning with another run, so that whatever else the machine does in some minutes
+  /// falls on all runs alike.
+  void simulate() {
+    const std::size_t size = job_.plan.size();
+    const auto chosen = [&](std::size_t run) {
+      return !options_.run || *options_.run == static_cast<long>(run);
+    };
+    const double until = job_.plan.until;
+    double done = 0, all = 0;
+    for (std::size_t run = 1; run <= size; ++run) {
+      if (!chosen(run)) continue;
+      all += until * options_.repeat;
+      const std::optional<RunRecord>& record = records_[run - 1];
+      if (record && !pending(*record)) done += until * options_.repeat;
+      if (record && pending(*record)) done += until * static_cast<double>(record->timings.size());
+    }
+    ProgressBar progress(done, all, common_.quiet);
+    for (int round = 0; round < options_.repeat; ++round) {
+      for (std::size_t k = 0; k < size; ++k) {
+        const std::size_t run =
+            1 +
+            (k + static_cast<std::size_t>(round) * size / static_cast<std::size_t>(options_.repeat)) % size;
+        std::optional<RunRecord>& record = records_[run - 1];
+        if (!chosen(run) ||
+            (record && (!pending(*record) || record->timings.size() > static_cast<std::size_t>(round))))
+          continue;
+        const auto eachFrame = [&](double time) { progress.update(done + time); };
+        if (record) {
+          repeatRun(job_.plan, run, common_.threads, eachFrame, *record);
+        } else {
+          record = firstRepetition(job_.plan, run, common_.threads, eachFrame);
+        }
+        done += until;
+        writeRecord(recordFile(job_.folder, run), *record);
+      }
+    }
+  }
+
+  void merge() {
+    for (const std::string& part : options_.merge) {
+      if (!std::filesystem::is_directory(std::filesystem::path(part) / "runs"))
+        throw InputError("--merge", "expected the --out of a study, found no folder " + part + "/runs");
+      load(part);
+    }
+    std::string missing;
+    for (std::size_t run = 1; run <= records_.size(); ++run)
+      if (!records_[run - 1]) missing += (missing.empty() ? "" : ", ") + std::to_string(run);
+    if (!missing.empty())
+      throw InputError("--merge", "expected all " + std::to_string(records_.size()) +
+                                      " runs, found none of " + missing + "; make them with --run");
+    for (std::size_t run = 1; run <= records_.size(); ++run)
+      writeRecord(recordFile(job_.folder, run), *records_[run - 1]);
+  }
+
+  int finish() const {
+    std::vector<FinishedRun> runs;
+    for (std::size_t run = 1; run <= records_.size(); ++run)
+      runs.push_back({run, job_.plan.values(run), *records_[run - 1]});
+    writeTextFile(job_.folder / "study.csv", studyCsv(job_.plan, runs));
+    const std::string summary = studySummary(job_.plan, runs);
+    writeTextFile(job_.folder / "summary.md", summary);
+    const std::vector<AccuracyMeasure>& measures = accuracyMeasures();
+    plotStudy(job_.folder / "cost_accuracy.png", job_.plan, runs, measures.front());
+    for (std::size_t k = 1; k < measures.size(); ++k)
+      plotStudy(job_.folder / (measures[k].column + ".png"), job_.plan, runs, measures[k]);
+    std::cout << summary << "\nWritten to " << job_.folder.string()
+              << ": study.csv, summary.md, cost_accuracy.png and a picture for each measure\n";
+    int code = kDone;
+    for (const FinishedRun& run : runs) {
+      if (run.record.trouble.empty()) continue;
+      std::cerr << recordFile(job_.folder, run.run).string() << ": " << run.record.trouble << '\n';
+      code = kNumericalTrouble;
+    }
+    return code;
+  }
+
+  const StudyOptions& options_;
+  const CommonOptions& common_;
+  const StudyJob job_;
+  std::vector<std::optional<RunRecord>> records_;  ///< of run k + 1
+};
+
+}  // namespace
+
+Command studyCommand() {
+  return {
+      "study", "Shows what accuracy costs in time: a grid of runs, measured.", [](CLI::App& parser) {
+        const auto options = std::make_shared<StudyOptions>();
+        parser.add_option("scene", options->scene, "Scene file.")->required()->type_name("SCENE");
+        parser
+            .add_option("--vary", options->vary,
+                        "Values of a key of the scene, with commas between; repeatable: all "
+                        "combinations are run.")
+            ->required()
+            ->allow_extra_args(false)
+            ->type_name("/POINTER=A,B,...");
+        parser
+            .add_option("--until", options->until,
+                        "Simulated time at the end of each run, in s; left out: the scene's.")
+            ->type_name("S");
+        parser
+            .add_option("--out", options->out,
+                        "Folder for study.csv, summary.md, the pictures and runs/K.json. What is there "
+                        "of this study already is not run again.")
+            ->required()
+            ->type_name("DIR");
+        parser.add_option("--repeat", options->repeat, "How often each run is timed; left out: 3.")
+            ->type_name("N");
+        CLI::Option* const list =
+            parser.add_flag("--list", options->list, "Prints the runs with their numbers, runs none.");
+        CLI::Option* const one =
+            parser.add_option("--run", options->run, "Does one run and writes its runs/K.json, no table.")
+                ->type_name("K")
+                ->excludes(list);
+        parser.add_option("--merge", options->merge, "Joins the runs in these folders, simulates nothing.")
+            ->type_name("DIR...")
+            ->excludes(list)
+            ->excludes(one);
+        return [options](const CommonOptions& common) { return Study(*options, common).run(); };
+      }};
+}
+
+}  // namespace migiwa

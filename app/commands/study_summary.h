@@ -1,0 +1,15 @@
+// A study in words, as Markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/study/plan.h"
+#include "core/study/table.h"
+
+namespace migiwa {
+
+/// Which runs are on the front of each measure, what the best accuracy costs, and how far times scatter.
+std::string studySummary(const StudyPlan& plan, const std::vector<FinishedRun>& runs);
+
+}  // namespace migiwa

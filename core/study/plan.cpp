@@ -1,0 +1,39 @@
+#include "core/study/plan.h"
+
+#include "core/base/checksum.h"
+#include "core/base/state_hash.h"
+#include "core/scene/scene_identity.h"
+
+namespace migiwa {
+
+std::size_t StudyPlan::size() const {
+  std::size_t count = 1;
+  for (const StudyAxis& axis : axes) count *= axis.values.size();
+  return count;
+}
+
+std::vector<std::string> StudyPlan::values(std::size_t run) const {
+  std::vector<std::string> result(axes.size());
+  std::size_t rest = run - 1;
+  for (std::size_t k = axes.size(); k-- > 0;) {
+    result[k] = axes[k].values[rest % axes[k].values.size()];
+    rest /= axes[k].values.size();
+  }
+  return result;
+}
+
+std::vector<Override> StudyPlan::overrides(std::size_t run) const {
+  std::vector<Override> result = common;
+  const std::vector<std::string> chosen = values(run);
+  for (std::size_t k = 0; k < axes.size(); ++k) result.push_back({axes[k].pointer, chosen[k]});
+  return result;
+}
+
+std::string runFingerprint(const StudyPlan& plan, std::size_t run) {
+  Json identity = sceneIdentity(readScene(plan.scene, plan.overrides(run)));
+  identity["until"] = plan.until;
+  const std::string text = identity.dump();
+  return hexDigits(checksum(kEmptyChecksum, text.data(), text.size()));
+}
+
+}  // namespace migiwa

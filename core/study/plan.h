@@ -1,0 +1,37 @@
+// The grid of runs of a study: every combination of the values that are varied.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene_reader.h"
+
+namespace migiwa {
+
+/// One `--vary /pointer=a,b,c`.
+struct StudyAxis {
+  std::string pointer;
+  std::vector<std::string> values;  ///< as an Override has them
+};
+
+struct StudyPlan {
+  std::filesystem::path scene;
+  std::vector<Override> common;  ///< of every run, before what is varied
+  std::vector<StudyAxis> axes;   ///< at least one, each with at least one value
+  double until = 0;              ///< simulated time at the end of each run (s)
+
+  /// Runs are numbered from 1 to size().
+  std::size_t size() const;
+  /// The values of a run, one for each axis. The last axis changes fastest.
+  std::vector<std::string> values(std::size_t run) const;
+  std::vector<Override> overrides(std::size_t run) const;
+};
+
+/// Tells the runs of one study from those of any other: a checksum of every value in force, of the content of
+/// the files that the scene names, and of `until`. Throws InputError when the scene cannot be read.
+std::string runFingerprint(const StudyPlan& plan, std::size_t run);
+
+}  // namespace migiwa

@@ -1,0 +1,106 @@
+#include "core/study/study_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/io/report.h"
+#include "core/simulation/run.h"
+#include "core/study/peak_memory.h"
+#include "core/study/reference_errors.h"
+
+namespace migiwa {
+
+namespace {
+
+Measure relative(const Measure& value, const Measure& expected) {
+  return value && expected && *expected > 0 ? Measure(*value / *expected - 1) : std::nullopt;
+}
+
+RunTiming timingOf(const Report& report, const RunStatistics& statistics) {
+  const double simulated = report.simulatedSeconds.value_or(0);
+  RunTiming timing{simulated > 0 ? 1e3 * *report.wallSeconds / simulated : 0,
+                   report.stepMedian.value_or(0),
+                   report.stages,
+                   {}};
+  for (const float seconds : statistics.stepSeconds)
+    timing.stepMicroseconds.push_back(static_cast<int>(std::lround(1e6F * seconds)));
+  return timing;
+}
+
+std::string troubleOf(const Report& report) {
+  std::string text;
+  for (const Trouble& trouble : report.trouble)
+    text += (text.empty() ? "" : "; ") + trouble.kind + " at step " + std::to_string(trouble.step) + ": " +
+            trouble.detail;
+  return text;
+}
+
+}  // namespace
+
+RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
+                          const std::function<void(double)>& eachFrame) {
+  const std::vector<Override> overrides = plan.overrides(run);
+  RunRecord record;
+  record.fingerprint = runFingerprint(plan, run);
+  resetPeakMemory();
+  Simulation simulation(readScene(plan.scene, overrides), threads);
+  ReferenceSampler reference(threads);
+  const long last = simulation.frameAt(plan.until);
+  // Of the run alone: judging a state takes memory of its own.
+  double memory = peakMemory();
+  const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
+    eachFrame(simulation.time());
+    const long frame = simulation.frame();
+    if (simulation.stopped() || kJudgedStates * frame / last == kJudgedStates * (frame - 1) / last)
+      return true;
+    memory = std::max(memory, peakMemory());
+    reference.sample(simulation);
+    resetPeakMemory();
+    return true;
+  });
+  const Report report = makeReport(simulation, settled, overrides);
+  const ReferenceErrors errors = reference.result();
+
+  record.overrides = report.overrides;
+  record.stateHash = report.stateHash;
+  record.gammaMethod = report.gammaMethod;
+  record.threads = simulation.threads();
+  if (simulation.statistics().failed()) record.trouble = troubleOf(report);
+  record.measures = {{"iterations", report.iterationsMean},
+                     {"gamma_error", errors.gammaMean},
+                     {"density_error_mean", errors.densityMean},
+                     {"density_error_max", errors.densityMax},
+                     {"height_error", relative(settled.height, settled.expectedHeight)},
+                     {"edge_crowding", settled.edgeCrowding},
+                     {"near_wall_spacing_p1", settled.nearWallSpacingP1},
+                     {"rms_speed", settled.rmsSpeed},
+                     {"lost", report.lostParticles},
+                     {"memory_bytes", memory},
+                     {"gamma_error_max", errors.gammaMax},
+                     {"solver_density_error_mean", report.densityErrorMean},
+                     {"bulk_spacing_p1", settled.bulkSpacingP1},
+                     {"particles", report.particles},
+                     {"steps", report.steps},
+                     {"nonfinite", report.nonfiniteParticles}};
+  record.timings.push_back(timingOf(report, simulation.statistics()));
+  return record;
+}
+
+void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
+               const std::function<void(double)>& eachFrame, RunRecord& record) {
+  const std::vector<Override> overrides = plan.overrides(run);
+  Simulation simulation(readScene(plan.scene, overrides), threads);
+  const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
+    eachFrame(simulation.time());
+    return true;
+  });
+  const Report report = makeReport(simulation, settled, overrides);
+  if (report.stateHash != record.stateHash)
+    throw InputError("--out", "run " + std::to_string(run) + " was recorded with state " + record.stateHash +
+                                  " and now ends in " + report.stateHash +
+                                  ": recorded by another build of the program; take another --out");
+  record.timings.push_back(timingOf(report, simulation.statistics()));
+}
+
+}  // namespace migiwa
