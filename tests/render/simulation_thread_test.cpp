@@ -31,7 +31,7 @@ TEST_F(SimulationThreadTest, ShowsTheStartAndWaits) {
   ASSERT_TRUE(simulation_.takeFrame(frame_));
   EXPECT_EQ(frame_.info.time, 0);
   EXPECT_EQ(frame_.positions.size(), 150U);
-  EXPECT_FALSE(simulation_.walls().empty());
+  EXPECT_FALSE(simulation_.walls().lines.empty());
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_FALSE(simulation_.takeFrame(frame_)) << "nobody asked it to play";
 }
