@@ -146,6 +146,16 @@ bool GriddedSurface::project(Vec3f& p, float margin) const {
   return true;
 }
 
+bool GriddedSurface::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  // No wall is nearer than the way is long: nothing to cross.
+  const float length = (to - from).norm();
+  const Place place = placeOf(from);
+  if (least_[place.block] >= length) return false;
+  Vec3f ignored;
+  if (grid_.blocks[place.block] >= 0 && interpolate(place, ignored) >= 1.02F * length) return false;
+  return shape_->crosses(from, to, normal, entry);
+}
+
 std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
     const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool) {
   constexpr double kMostBlocks = kMostBytes / sizeof(std::int32_t);

@@ -35,9 +35,8 @@ class GriddedSurface final : public Surface {
     shape_->exits(origin, directions, exits);
   }
   float thickness() const override { return shape_->thickness(); }
-  bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override {
-    return shape_->crosses(from, to, normal, entry);
-  }
+  float thinnestPart() const override { return shape_->thinnestPart(); }
+  bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return shape_->planar(); }
   PieceRule pieceRule() const override { return shape_->pieceRule(); }
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override {

@@ -36,6 +36,7 @@ class MovingSurface final : public Surface {
   bool reentrant() const override { return rest_->reentrant(); }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
   float thickness() const override { return rest_->thickness(); }
+  float thinnestPart() const override { return rest_->thinnestPart(); }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return rest_->planar(); }
   PieceRule pieceRule() const override { return rest_->pieceRule(); }

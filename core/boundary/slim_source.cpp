@@ -7,6 +7,7 @@
 #include "core/boundary/gamma/grid_cache.h"
 #include "core/boundary/slim_cache.h"
 #include "core/slim/slim_file.h"
+#include "core/slim/slim_rays.h"
 
 namespace migiwa {
 
@@ -63,12 +64,14 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
     if (std::string note = cutTo(data, source.tolerance, source.nodes); !note.empty())
       result->notes.push_back(std::move(note));
     result->model = std::make_unique<const SlimModel>(std::move(data.nodes), data.degree, data.closed, pool);
+    result->thinnestPart = slimThickness(*result->model);
     return result;
   }
   SlimFit fit = fitOf(source, pool);
   result->notes = std::move(fit.notes);
   result->model =
       std::make_unique<const SlimModel>(std::move(fit.data.nodes), fit.data.degree, fit.data.closed, pool);
+  result->thinnestPart = slimThickness(*result->model);
   return result;
 }
 

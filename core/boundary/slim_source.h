@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -33,6 +34,8 @@ struct SlimSource {
 struct SlimWallData {
   std::unique_ptr<const SlimModel> model;
   std::vector<std::string> notes;  ///< of the import
+  /// The least way through the solid (m).
+  float thinnestPart = std::numeric_limits<float>::infinity();
 
   /// The surface for pictures, extracted when it is first asked for.
   const SlimMesh& drawnMesh() const;

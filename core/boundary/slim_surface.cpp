@@ -149,6 +149,16 @@ void SlimSurface::exits(const Vec3f& origin, const Directions& directions, std::
   for (std::size_t k = 0; k < exits.size(); ++k) exits[k] = passages.of[k][1];
 }
 
+float SlimSurface::thinnestPart() const {
+  return holdsFluid() ? Surface::thinnestPart() : data_->thinnestPart;
+}
+
+bool SlimSurface::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  if (!slimFirstPassage(*data_->model, from, to, holdsFluid(), entry, normal)) return false;
+  if (holdsFluid()) normal = -normal;
+  return true;
+}
+
 void SlimSurface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {
   const float side = holdsFluid() ? -1.0F : 1.0F;
   data_->model->visitWithin(p, reach, [&](std::uint32_t index) {

@@ -25,6 +25,8 @@ class SlimSurface : public Surface {
   /// Thin parts let rays out again, and a vessel may bend.
   bool reentrant() const override { return true; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
+  float thinnestPart() const override;
+  bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   /// One for each node whose centre is nearer than `reach`, with that as its foot point: [FM] Eq. 14.
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   Bounds bounds() const override;

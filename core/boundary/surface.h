@@ -87,8 +87,12 @@ class Surface {
   /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
   /// neighbours across it are none.
   virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
+  /// The least way through any part of the solid (m), thickness() included: no move may pass through it
+  /// unseen, though what lies behind does count.
+  virtual float thinnestPart() const { return thickness(); }
   /// Whether the way from one point of the fluid to another passes through the solid; then the unit normal
-  /// where it enters, and how far along the way that is, in [0, 1]. Only for a solid of finite thickness.
+  /// where it enters, and how far along the way that is, in [0, 1]. Only for a solid with a finite
+  /// thinnestPart().
   virtual bool crosses(const Vec3f& /*from*/, const Vec3f& /*to*/, Vec3f& /*normal*/,
                        float& /*entry*/) const {
     return false;

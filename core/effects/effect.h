@@ -3,6 +3,7 @@
 // step, its buffers are not allocated and its panel is not in the window.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -37,6 +38,9 @@ class Effect {
   /// Buffers that it needs beside the solver's own. They are shared: what one stage leaves, the next does not
   /// find.
   virtual std::size_t buffers() const { return 0; }
+
+  /// The longest step (s) over which the effect is stable; infinite where any will do.
+  virtual double longestStep(const StepState&) const { return std::numeric_limits<double>::infinity(); }
 
   /// Changes state.current, the predicted positions (m). Particles are sorted and have their neighbours.
   virtual void changePrediction(StepState&, std::span<EffectBuffer>) const {}

@@ -5,6 +5,9 @@
 // Both parts are antisymmetric, so momentum is conserved. Deviations: the factors c and a are measured, so
 // that sigma is the surface tension of the continuum, by the period of a droplet's oscillation; and the rest
 // density in n_i. A wall attracts nothing: to the fluid it is air that cannot be entered.
+#include <cmath>
+#include <numbers>
+
 #include "core/effects/effects.h"
 #include "core/solver/step_state.h"
 
@@ -119,6 +122,13 @@ class SurfaceTension final : public Effect {
   }
   std::unique_ptr<Effect> clone() const override { return std::make_unique<SurfaceTension>(*this); }
   EffectStages stages() const override { return {.prediction = coefficient_ > 0}; }
+
+  /// Brackbill, Kothe & Zemach 1992: a capillary wave as short as particles resolve must not run ahead.
+  double longestStep(const StepState& state) const override {
+    const auto spacing = static_cast<double>(state.spacing);
+    return 0.25 * std::sqrt(state.parameters.restDensity * spacing * spacing * spacing /
+                            (2 * std::numbers::pi * coefficient_));
+  }
 
   void changePrediction(StepState& state, std::span<EffectBuffer>) const override {
     const std::size_t n = state.particles.size();

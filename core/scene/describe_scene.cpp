@@ -122,7 +122,7 @@ void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
                   {"1", "Parts that a frame is divided into, at least."});
   visitor.number(
       "cfl", solver.cfl, Range::closed(0, 10),
-      {"1", "Support radii that the fastest particle may move in a substep; 0 for no such limit."});
+      {"1", "Support radii that the fastest particle may move in a substep; 0 for no such limit, nor those of effects."});
   visitor.integer("min_iterations", solver.minIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),

@@ -177,6 +177,7 @@ void Simulation::advanceFrame() {
     if (parameters.cfl > 0) {
       const double speed = state.largestSpeed(start, longest);
       if (speed * step > reach) step = reach / speed;
+      step = std::min(step, state.effects.longestStep(state.step));
     }
     long parts = static_cast<long>(std::ceil(left / step - 1e-6));
     if (parts > kMostSubsteps - taken) {

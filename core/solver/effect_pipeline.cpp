@@ -31,6 +31,13 @@ void EffectPipeline::changeVelocities(StepState& state) {
     state.times.time(stage.name, [&] { stage.effect->changeVelocities(state, buffers_); });
 }
 
+double EffectPipeline::longestStep(const StepState& state) const {
+  double longest = std::numeric_limits<double>::infinity();
+  for (const auto* stage : {&prediction_, &iteration_, &velocity_})
+    for (const NamedEffect& named : *stage) longest = std::min(longest, named.effect->longestStep(state));
+  return longest;
+}
+
 std::size_t EffectPipeline::bytes() const {
   std::size_t bytes = 0;
   for (const EffectBuffer& buffer : buffers_) bytes += buffer.capacity() * sizeof(Float4);

@@ -19,6 +19,9 @@ class EffectPipeline {
   void changePositions(StepState& state, float weight);
   void changeVelocities(StepState& state);
 
+  /// The longest step (s) over which all of them are stable.
+  double longestStep(const StepState& state) const;
+
   /// Memory of the effects' own (bytes).
   std::size_t bytes() const;
 

@@ -12,9 +12,12 @@ std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRad
 }
 
 std::vector<const Surface*> barringWalls(const Boundary& boundary, float supportRadius) {
-  std::vector<const Surface*> barring = thinWalls(boundary, supportRadius);
+  std::vector<const Surface*> barring;
+  for (const auto& surface : boundary.surfaces())
+    if (surface->thinnestPart() < supportRadius) barring.push_back(surface.get());
   for (const auto& wall : boundary.moving())
-    if (std::isfinite(wall->thickness()) && wall->thickness() >= supportRadius) barring.push_back(wall.get());
+    if (std::isfinite(wall->thinnestPart()) && wall->thinnestPart() >= supportRadius)
+      barring.push_back(wall.get());
   return barring;
 }
 

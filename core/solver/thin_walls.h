@@ -8,7 +8,8 @@ namespace migiwa {
 
 /// The walls of a boundary that are thinner than the support radius (m).
 std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRadius);
-/// Those, and the solids that move: they may come from one side of a particle to the other in one step.
+/// Those, solids of which a part is so thin, and the solids that move: they may come from one side of a
+/// particle to the other in one step.
 std::vector<const Surface*> barringWalls(const Boundary& boundary, float supportRadius);
 
 /// Where a move ends that thin walls bar: `margin` (m) before the wall that it meets, where it would have

@@ -72,6 +72,21 @@ TEST(WallFriction, ALayerStaysOnASlopeUpToItsAngleAndSlidesBeyond) {
   EXPECT_NEAR(meanVelocity(beyond), 0.5 * acceleration, 0.03 * 0.5 * acceleration);
 }
 
+TEST(WallFriction, AMovingWallDragsALayerAlong) {
+  constexpr double kWall = 0.8, kFriction = 0.25;
+  Scene scene = layer(1, 0, 0, R"({"wall_friction": {"coefficient": 0.25}})");
+  auto floor = std::make_shared<Plane>(Vec3d::Zero(), Vec3d::UnitY());
+  Motion motion;
+  motion.velocity = {kWall, 0, 0};
+  floor->motion = motion;
+  scene.surfaces = {floor};
+  Simulation simulation(scene, 1);
+  runFor(simulation, 0.2);
+  EXPECT_NEAR(meanVelocity(simulation), kFriction * kGravity * 0.2, 0.03 * kWall);
+  runFor(simulation, 0.6);  // kWall / (kFriction * kGravity) = 0.33 s
+  EXPECT_NEAR(meanVelocity(simulation), kWall, 0.01 * kWall);
+}
+
 TEST(WallFriction, WithoutItALayerSlidesForEver) {
   Simulation simulation(layer(1, 1, 0, "{}"), 1);
   runFor(simulation, 0.5);

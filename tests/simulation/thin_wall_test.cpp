@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/boundary/box.h"
+#include "core/boundary/slim_surface.h"
 #include "core/simulation/simulation.h"
 #include "core/solver/thin_walls.h"
 #include "tests/support/test_scenes.h"
@@ -99,6 +100,30 @@ TEST(ThinWall, AMoveThatIsHeldBackGoesOnAlongTheWall) {
   EXPECT_FLOAT_EQ(held.y(), to.y());
   EXPECT_FLOAT_EQ(held.z(), to.z());
   EXPECT_EQ(heldBack(walls, from, false, Vec3f(0.3F, 0.2F, 0.1F), 0.025F), Vec3f(0.3F, 0.2F, 0.1F));
+}
+
+TEST(ThinWall, FastWaterStaysInAThinBowlOfAnyShape) {
+  // The wall is a third of the support radius thick, and a step takes the water five times as far.
+  SlimSource source;
+  source.kind = SlimSource::Kind::bowl;
+  source.bowl = {Vec3d::Zero(), 0.5, 0.03};
+  source.degree = 2;
+  source.nodes = 1500;
+  const auto data = prepareSlim(source);
+  EXPECT_NEAR(data->thinnestPart, 0.03, 0.003);
+  Scene scene = emptyScene();
+  scene.surfaces.push_back(std::make_shared<SlimSurface>(data, SlimSurface::Fluid::outside));
+  addFluid(scene, {-0.15, -0.3, -0.15}, {0.15, 0, 0.15}, {0, -30, 0});
+  scene.solver.cfl = 0;
+  Simulation simulation(scene, 2);
+  for (int k = 0; k < 20 && !simulation.stopped(); ++k) {
+    simulation.advanceFrame();
+    for (const Float4& p : simulation.view().positions) {
+      const Vec3d at = p.xyz().cast<double>();
+      ASSERT_FALSE(at.y() < 0 && at.norm() > 0.5) << "frame " << k << ": " << at.transpose();
+    }
+  }
+  EXPECT_FALSE(simulation.stopped());
 }
 
 }  // namespace
