@@ -59,6 +59,9 @@ namespace {
 /// Substeps a frame has at most: a run that needs more is told so instead of standing still.
 constexpr long kMostSubsteps = 1000;
 
+/// Density error of a start above which fluid is on top of fluid. A lattice between walls reads some percent.
+constexpr double kCrowdedStart = 0.5;
+
 }  // namespace
 
 void Simulation::State::configure() {
@@ -109,6 +112,12 @@ Simulation::Simulation(Scene scene, int threads)
                               "it; they were moved out without gaining speed");
   } else {
     prepareFields(state.step);
+    if (const double error = state.step.errors.back().max; error > kCrowdedStart) {
+      relax(state.step);
+      state.statistics.note("started_crowded", 0,
+                            "sources overlap: density " + std::to_string(1 + error) +
+                                " of that at rest; particles were moved apart without gaining speed");
+    }
   }
   state.health = inspect(state.step, state.limits);
   state.info.stateHash = stateHash();

@@ -59,6 +59,22 @@ void advanceStep(StepState& state, EffectPipeline& effects) {
   effects.changeVelocities(state);
 }
 
+void relax(StepState& state) {
+  // The mean hides the few that were pushed: what counts here is the largest error, and a wall's first layer
+  // of a resting lattice reads some percent by itself. Neighbours change on the way, hence several solves.
+  constexpr double kCalm = 0.04;
+  constexpr int kMostSolves = 30;
+  EffectPipeline none;
+  for (int solve = 0; solve < kMostSolves; ++solve) {
+    takePositions(state);
+    stages::projectAll(state);
+    solveConstraint(state, none);
+    stages::projectAll(state);
+    stages::acceptPositions(state);
+    if (state.errors.back().max <= kCalm) break;
+  }
+}
+
 long stabilise(StepState& state) {
   Particles& particles = state.particles;
   // Rounding leaves centres a hair nearer than the margin; that is no start inside a wall.
@@ -77,19 +93,7 @@ long stabilise(StepState& state) {
       },
       [](long a, long b) { return a + b; });
   if (inside == 0) return 0;
-  // The mean hides the few that were pushed: what counts here is the largest error, and a wall's first layer
-  // of a resting lattice reads some percent by itself. Neighbours change on the way, hence several solves.
-  constexpr double kCalm = 0.04;
-  constexpr int kMostSolves = 30;
-  EffectPipeline none;
-  for (int solve = 0; solve < kMostSolves; ++solve) {
-    takePositions(state);
-    stages::projectAll(state);
-    solveConstraint(state, none);
-    stages::projectAll(state);
-    stages::acceptPositions(state);
-    if (state.errors.back().max <= kCalm) break;
-  }
+  relax(state);
   return inside;
 }
 

@@ -14,6 +14,10 @@ void advanceStep(StepState& state, EffectPipeline& effects);
 /// the push does not become speed. Returns how many particles were inside; 0: nothing was done.
 long stabilise(StepState& state);
 
+/// Solves the density on the positions alone, for fluid that starts on top of fluid: what pushes particles
+/// apart does not become speed.
+void relax(StepState& state);
+
 /// Neighbours, gamma, density and lambda of the positions as they are, for a picture of the start.
 void prepareFields(StepState& state);
 

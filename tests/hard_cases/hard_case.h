@@ -1,0 +1,65 @@
+// A hard case: a scene of scenes/hard/, and what mechanics says of its run.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa::testing {
+
+/// What a run was seen to do. Energies are those of all particles over their mass (J/kg = m^2/s^2).
+struct Observed {
+  double energyGain = 0;   ///< most that kinetic + potential energy ever was above that of the start
+  double allowance = 0;    ///< of the time integration: half a step's fall, see observe()
+  double maxSpeed = 0;     ///< (m/s)
+  double penetration = 0;  ///< (m)
+  long lost = 0, nonfinite = 0;
+  double nearest = std::numeric_limits<double>::infinity();  ///< least distance to a wall over the spacing
+  double momentum = 0;    ///< change of momentum per mass that gravity does not explain (m/s)
+  double meanError = 0;   ///< mean of max(rho/rho0 - 1, 0) at the end
+  double worstError = 0;  ///< its largest at any time
+  double rmsSpeed = 0;    ///< at the end (m/s)
+  double lowest = std::numeric_limits<double>::infinity();  ///< least coordinate y of a particle, ever (m)
+  long steps = 0;
+  std::size_t particles = 0;
+  std::uint64_t hash = 0;
+  std::vector<std::string> guards;  ///< kinds of trouble that the run notes
+  FrameSnapshot end;
+};
+
+struct HardCase {
+  std::string name;   ///< of the case
+  std::string scene;  ///< file in scenes/hard/ without its ending
+  double until = 0;   ///< (s)
+  /// Largest energy gain that is allowed over `allowance` (J/kg), and where it comes from.
+  double energy = 0;
+  std::string energyFrom = "nothing";
+  double speed = 0;                 ///< largest speed at any time (m/s)
+  double meanError = 0.01;          ///< largest mean density error at the end
+  double worstError = 0.5;          ///< largest density error at any time
+  double rmsSpeed = -1;             ///< largest rms speed at the end (m/s); negative: still moving
+  double lowest = -1e9;             ///< no particle is ever below (m)
+  int copies = 1;                   ///< times that the scene's fluid is there
+  bool everyMethod = false;         ///< also with other gamma methods than the scene's
+  std::vector<std::string> guards;  ///< that have to act, and no other ones
+};
+
+std::vector<HardCase> hardCases();
+
+/// With the copies, and another gamma method or none if `method` is empty.
+Scene sceneOf(const HardCase& hardCase, const std::string& method = {});
+
+/// Runs a scene for a time and watches every frame.
+Observed observe(const Scene& scene, double until, int threads = 1);
+
+/// What does not hold, one sentence each.
+std::vector<std::string> violations(const HardCase& hardCase, const Observed& seen);
+
+/// The README of this folder.
+std::string tableText();
+
+}  // namespace migiwa::testing

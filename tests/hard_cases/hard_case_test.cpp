@@ -1,0 +1,51 @@
+// Every case of hardCases() keeps what it states, with the same bits for any number of threads.
+#include "tests/hard_cases/hard_case.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/scene/scene_reader.h"
+
+namespace migiwa::testing {
+namespace {
+
+std::string testName(const HardCase& hardCase) {
+  std::string name = hardCase.name;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  return name;
+}
+
+class HardCases : public ::testing::TestWithParam<HardCase> {};
+
+TEST_P(HardCases, KeepWhatTheyState) {
+  const Scene scene = sceneOf(GetParam());
+  const Observed one = observe(scene, GetParam().until, 1);
+  for (const std::string& violation : violations(GetParam(), one)) ADD_FAILURE() << violation;
+  EXPECT_EQ(observe(scene, GetParam().until, 3).hash, one.hash) << "with 3 threads";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, HardCases, ::testing::ValuesIn(hardCases()),
+                         [](const auto& one) { return testName(one.param); });
+
+class EveryMethod : public ::testing::TestWithParam<HardCase> {};
+
+TEST_P(EveryMethod, KeepsWhatTheCaseStates) {
+  for (const std::string method : {"product", "copula", "directions", "mean", "nearest"}) {
+    const Observed seen = observe(sceneOf(GetParam(), method), GetParam().until, 1);
+    for (const std::string& violation : violations(GetParam(), seen))
+      ADD_FAILURE() << method << ": " << violation;
+  }
+}
+
+std::vector<HardCase> casesOfEveryMethod() {
+  std::vector<HardCase> cases;
+  for (const HardCase& hardCase : hardCases())
+    if (hardCase.everyMethod) cases.push_back(hardCase);
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryMethod, ::testing::ValuesIn(casesOfEveryMethod()),
+                         [](const auto& one) { return testName(one.param); });
+
+}  // namespace
+}  // namespace migiwa::testing
