@@ -24,7 +24,7 @@ struct ReferenceErrors {
 
 class ReferenceSampler {
  public:
-  /// Of the reference: its error is below 0.0005 at edges and corners (tests/study).
+  /// Of the reference: its error is below 0.001 at edges and corners (tests/study).
   static constexpr int kDirections = 16384;
 
   /// `threads` as for a Simulation.
