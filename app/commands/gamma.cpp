@@ -12,6 +12,7 @@
 #include "app/commands/gamma_plot.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/boundary/handling.h"
 #include "core/io/output_file.h"
 #include "core/io/points_csv.h"
 
@@ -32,7 +33,14 @@ GammaContext contextOf(const Scene& scene, const Boundary& boundary, ThreadPool&
           scene.boundary.samples,
           scene.bounds(),
           &pool,
-          scene.file.string() + ":/boundary/gamma/method"};
+          scene.file.string() + ":/boundary/gamma/method",
+          static_cast<float>(scene.particleSpacing)};
+}
+
+/// What corrects the density at the scene's walls; without any correction, the gamma that it leaves out.
+PickedGamma methodOf(const Scene& scene, const GammaContext& context) {
+  PickedGamma picked = makeHandling(scene.boundary.handling, scene.boundary.gammaMethod, context);
+  return picked.method ? std::move(picked) : makeGammaMethod(scene.boundary.gammaMethod, context);
 }
 
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
@@ -40,7 +48,7 @@ void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool&
   const std::vector<Vec3d> points = readPoints(options.points);
   const Boundary boundary(scene.surfaces);
   const GammaContext context = contextOf(scene, boundary, pool);
-  const PickedGamma picked = makeGammaMethod(scene.boundary.gammaMethod, context);
+  const PickedGamma picked = methodOf(scene, context);
   std::vector<Float4> at(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4(points[i].cast<float>());
   std::vector<GammaSample> samples(points.size());
@@ -185,9 +193,14 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
       maps.push_back(mapOf(picked, reference, boundary, window, pool));
       panels.push_back({titled("error", maps.back()), maps.back().error, true});
     }
+    for (std::size_t k = 0; k < handlingNames().size(); ++k) {
+      const auto handling = static_cast<BoundaryHandling>(k);
+      if (handling == BoundaryHandling::gamma || handling == BoundaryHandling::none) continue;
+      maps.push_back(mapOf(makeHandling(handling, 0, context), reference, boundary, window, pool));
+      panels.push_back({titled("error", maps.back()), maps.back().error, true});
+    }
   } else {
-    maps.push_back(
-        mapOf(makeGammaMethod(scene.boundary.gammaMethod, context), reference, boundary, window, pool));
+    maps.push_back(mapOf(methodOf(scene, context), reference, boundary, window, pool));
     panels.push_back({"γ, " + maps.back().name, maps.back().gamma, false});
     panels.push_back({titled("error", maps.back()), maps.back().error, true});
   }

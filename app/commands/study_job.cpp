@@ -28,6 +28,12 @@ StudyAxis readAxis(const std::string& text, FaultCollector& collect) {
       if (std::find(axis.values.begin(), axis.values.end(), variant.value) != axis.values.end())
         throw InputError("--vary",
                          "expected each value once, found " + variant.value + " again in \"" + text + "\"");
+      const auto parts = [](const std::string& whole) { return std::count(whole.begin(), whole.end(), ':'); };
+      if (axis.pointer.find(':') != std::string::npos && parts(variant.value) > parts(axis.pointer))
+        throw InputError("--vary",
+                         "expected at most as many parts as pointers, with colons between them, "
+                         "found \"" +
+                             variant.value + "\" for " + axis.pointer);
       axis.values.push_back(variant.value);
     }
   });

@@ -52,7 +52,7 @@ bool isNumber(const std::string& text) {
 
 std::string noteOf(const StudyPlan& plan, const FinishedRun& run, std::size_t from) {
   std::string note;
-  for (std::size_t k = from; k < plan.axes.size(); ++k) note += (k > from ? ", " : "") + run.values[k];
+  for (std::size_t k = from; k < plan.axes.size(); ++k) note += (k > from ? ", " : "") + plan.axes[k].label(run.values[k]);
   return note;
 }
 
@@ -64,7 +64,7 @@ std::vector<Line> linesOf(const StudyPlan& plan, const std::vector<FinishedRun>&
       plan.axes.size() == 1 && std::all_of(first.values.begin(), first.values.end(), isNumber);
   std::vector<Line> lines(single ? 1 : first.values.size());
   for (std::size_t k = 0; k < lines.size(); ++k)
-    lines[k].label = single ? shortName(first.pointer) : first.values[k];
+    lines[k].label = single ? shortName(first.pointer) : first.label(first.values[k]);
   for (const FinishedRun& run : runs) {
     const std::optional<double> error = measure.error(run.record);
     if (!error || *error <= 0) continue;

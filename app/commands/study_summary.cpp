@@ -19,7 +19,7 @@ std::string digits(double value, const char* format = "%.3g") {
 std::string nameOf(const StudyPlan& plan, const FinishedRun& run) {
   std::string name;
   for (std::size_t k = 0; k < plan.axes.size(); ++k)
-    name += (k > 0 ? ", " : "") + shortName(plan.axes[k].pointer) + " " + run.values[k];
+    name += (k > 0 ? ", " : "") + shortName(plan.axes[k].pointer) + " " + plan.axes[k].label(run.values[k]);
   return name;
 }
 

@@ -1,21 +1,19 @@
 #include "app/ui/panels.h"
 #include "app/ui/widgets.h"
-#include "core/boundary/gamma_method.h"
+#include "core/boundary/handling.h"
 
 namespace migiwa {
 
 void boundaryPanel(PanelModel& model) {
   BoundaryParameters& boundary = model.settings.boundary;
-  bool corrected = boundary.handling == BoundaryHandling::gamma;
-  rowLabel("Correction γ");
-  if (ImGui::Checkbox("##correction", &corrected)) {
-    boundary.handling = corrected ? BoundaryHandling::gamma : BoundaryHandling::none;
+  rowLabel("Walls");
+  auto handling = static_cast<int>(boundary.handling);
+  if (choice("##handling", handling, handlingNames())) {
+    boundary.handling = static_cast<BoundaryHandling>(handling);
     model.wishes.settings = true;
   }
-  ImGui::SameLine();
-  faintText(corrected ? "on" : "off");
-  ImGui::BeginDisabled(!corrected);
-  rowLabel("Method");
+  ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
+  rowLabel("Method of γ");
   if (choice("##method", boundary.gammaMethod, gammaMethodNames())) model.wishes.settings = true;
   ImGui::EndDisabled();
   rowLabel("In use");

@@ -32,14 +32,28 @@ struct GammaChoice {
   std::string name, reason;
 };
 
+/// How a method's sample enters the density: S is what the fluid particles sum to, over rho0.
+enum class WallDensity {
+  divided,  ///< rho = S / gamma, [FM] Eq. 5
+  added,    ///< rho = S + (1 - gamma): the walls' own density is 1 - gamma, and may exceed 1
+};
+
 class GammaMethod {
  public:
+  explicit GammaMethod(WallDensity form = WallDensity::divided) : form_(form) {}
   virtual ~GammaMethod() = default;
+  GammaMethod(const GammaMethod&) = delete;
+  GammaMethod& operator=(const GammaMethod&) = delete;
+
+  WallDensity form() const { return form_; }
   virtual GammaChoice choice() const { return {}; }
   /// Takes in that walls of the boundary have moved. Not while evaluate() runs.
   virtual void wallsMoved() {}
   /// Fills out[i] for points[i] (xyz in m). Thread-safe.
   virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
+
+ private:
+  WallDensity form_;
 };
 
 struct GammaContext {
@@ -50,7 +64,8 @@ struct GammaContext {
   int samples = 100000;        ///< of the method "monte_carlo"
   Bounds region{};             ///< where the method "baked" has a grid (m); empty: about the finite walls
   ThreadPool* pool = nullptr;  ///< for what takes long; null: the calling thread alone
-  std::string place{};         ///< of the gamma method in the scene file, for errors
+  std::string place{};         ///< of the method in the scene file, for errors
+  float spacing = 0;           ///< of fluid particles at rest (m): what baselines put into walls
 };
 
 /// Names for the scene's gamma method, "auto" first.

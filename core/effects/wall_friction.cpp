@@ -45,9 +45,7 @@ class WallFriction final : public Effect {
         Vec3f kept = state.current[i].xyz();
         state.boundary.project(kept, state.wallMargin());
         Vec3f push = kept - state.current[i].xyz();
-        if (wallTerm)
-          push -= weight * state.supportRadius * state.lambda[i] * state.density[i] / state.gamma[i] *
-                  slot.sample.pairGradient;
+        if (wallTerm) push -= weight * state.supportRadius * state.wallPush(i) * slot.sample.pairGradient;
         if (push.squaredNorm() > 0) brake(state, i, push);
       }
     });

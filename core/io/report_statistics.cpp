@@ -59,7 +59,7 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   report.threads = simulation.threads();
   report.particles = particles;
   report.stateHash = hexDigits(simulation.stateHash());
-  report.handling = kHandlingNames[static_cast<std::size_t>(boundary.handling)];
+  report.handling = handlingNames()[static_cast<std::size_t>(boundary.handling)];
   report.gammaMethod = run.gammaPicked;
   report.gammaReason = run.gammaReason;
   report.stepMedian = milliseconds(quantile(run.stepSeconds, 0.5));

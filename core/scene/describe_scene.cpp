@@ -97,8 +97,11 @@ void describeMotion(FieldVisitor& visitor, std::optional<Motion>& motion) {
 
 void describeBoundary(FieldVisitor& visitor, Scene& scene) {
   BoundaryParameters& boundary = scene.boundary;
-  visitor.choice("handling", boundary.handling, kHandlingNames,
-                 {"", "How the density is corrected at walls; none only keeps the particles out."});
+  visitor.choice(
+      "handling", boundary.handling, handlingNames(),
+      {"",
+       "How the density is corrected at walls: by gamma, by one of the methods that it is compared "
+       "with, or not at all; none only keeps the particles out."});
   visitor.object("gamma", {"", "How gamma, the uncovered part of the kernel, is found."},
                  [&](FieldVisitor& fields) {
                    fields.choice("method", boundary.gammaMethod, gammaMethodNames(),
@@ -120,9 +123,10 @@ void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
   visitor.number("time_step", solver.timeStep, Range::positive(1), {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
                   {"1", "Parts that a frame is divided into, at least."});
-  visitor.number(
-      "cfl", solver.cfl, Range::closed(0, 10),
-      {"1", "Support radii that the fastest particle may move in a substep; 0 for no such limit, nor those of effects."});
+  visitor.number("cfl", solver.cfl, Range::closed(0, 10),
+                 {"1",
+                  "Support radii that the fastest particle may move in a substep; 0 for no such limit, nor "
+                  "those of effects."});
   visitor.integer("min_iterations", solver.minIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),

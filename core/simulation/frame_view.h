@@ -21,7 +21,7 @@ struct FrameInfo {
   long steps = 0;           ///< substeps so far
   float spacing = 0;        ///< particle spacing (m)
   float supportRadius = 0;  ///< (m)
-  std::string handling;     ///< how walls are handled, such as "gamma (product)" or "no correction"
+  std::string handling;     ///< how walls are handled, such as "gamma: product", "particles" or "no correction"
   int iterations = 0;       ///< of the last step
   std::vector<IterationError> errors;  ///< of the last step: before the first iteration, then after each
   StageTimes stages;                   ///< of the last frame (s)

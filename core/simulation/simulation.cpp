@@ -6,8 +6,8 @@
 
 #include "core/base/state_hash.h"
 #include "core/boundary/boundary.h"
-#include "core/boundary/gamma_method.h"
 #include "core/boundary/gridded_surface.h"
+#include "core/boundary/handling.h"
 #include "core/simulation/emission.h"
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
@@ -82,13 +82,16 @@ void Simulation::State::configure() {
   gamma = {};
   info.handling = "no correction";
   statistics.gammaPicked.clear();
-  if (scene.boundary.handling == BoundaryHandling::gamma && !boundary.empty()) {
-    gamma = makeGammaMethod(
-        scene.boundary.gammaMethod,
+  if (!boundary.empty()) {
+    const BoundaryHandling handling = scene.boundary.handling;
+    const bool isGamma = handling == BoundaryHandling::gamma;
+    gamma = makeHandling(
+        handling, scene.boundary.gammaMethod,
         {boundary, scene.solver.kernel, step.supportRadius, scene.boundary.directions, scene.boundary.samples,
-         scene.bounds(), &pool, scene.file.string() + ":/boundary/gamma/method"});
-    info.handling = "gamma: " + gamma.name;
-    statistics.gammaPicked = gamma.name;
+         scene.bounds(), &pool,
+         scene.file.string() + (isGamma ? ":/boundary/gamma/method" : ":/boundary/handling"), step.spacing});
+    if (gamma.method) info.handling = isGamma ? "gamma: " + gamma.name : gamma.name;
+    if (isGamma) statistics.gammaPicked = gamma.name;
     statistics.gammaReason = gamma.reason;
   }
   step.gammaMethod = gamma.method.get();

@@ -56,8 +56,8 @@ float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius)
   return std::min(slot.sample.gamma + slot.sample.gradient.dot(moved) / supportRadius, 1.0F);
 }
 
-long floorGamma(float& gamma) {
-  if (gamma >= kGammaFloor) return 0;
+long floorGamma(const StepState& state, float& gamma) {
+  if (gamma >= kGammaFloor || state.addsWallDensity()) return 0;
   gamma = kGammaFloor;
   return 1;
 }
@@ -117,7 +117,7 @@ void evaluateGamma(StepState& state) {
       state.wallSlots[place++] = slot;
       float& gamma = state.gamma[slot.particle];
       gamma = linearGamma(slot, state.current[slot.particle].xyz() - slot.at.xyz(), state.supportRadius);
-      floored[chunk] += floorGamma(gamma);
+      floored[chunk] += floorGamma(state, gamma);
     };
     std::for_each(found[chunk].known.begin(), found[chunk].known.end(), take);
     std::for_each(found[chunk].fresh.begin(), found[chunk].fresh.end(), take);
@@ -142,7 +142,7 @@ void refreshGamma(StepState& state) {
           }
           float& gamma = state.gamma[slot.particle];
           gamma = linearGamma(slot, moved, state.supportRadius);
-          floored += floorGamma(gamma);
+          floored += floorGamma(state, gamma);
         }
         return floored;
       },

@@ -1,6 +1,7 @@
 // METHOD: density [FM] Eq. 5, constraint Eq. 9, its gradients Eqs. 12 and 13 and lambda Eq. 11. Gradients are
 // taken from the pair kernel, as in Macklin & Mueller 2013, gamma's included. Deviation: the constraint is
-// clamped at zero, for the paper is silent on free surfaces and fluid clumps otherwise.
+// clamped at zero, for the paper is silent on free surfaces and fluid clumps otherwise. Methods that add the
+// walls' density instead of dividing by gamma have C = S + (1 - gamma) - 1, with the gradients that follow.
 #include <algorithm>
 
 #include "core/solver/stages.h"
@@ -61,18 +62,20 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const float massRatio = state.lattice.massRatio;
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
+  const bool added = state.addsWallDensity();
   const PairScale scale(state);
   stages::ErrorSum error;
   for (std::size_t i = begin; i < end; ++i) {
     const NeighbourSums sums = sumNeighbours<Kernel>(state, scale, static_cast<std::uint32_t>(i));
-    const float inverseGamma = 1 / state.gamma[i];
-    const float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
+    const float inverseGamma = added ? 1 : 1 / state.gamma[i];
+    float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
+    if (added) density += 1 - state.gamma[i];
     const float constraint = std::max(density - 1, 0.0F);
     float lambda = 0;
     if (constraint > 0) {
       Vec3f gradient = massRatio * sums.gradient;
       if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall)
-        gradient -= density * state.wallSlots[slot].sample.pairGradient;
+        gradient -= (added ? 1 : density) * state.wallSlots[slot].sample.pairGradient;
       const float squaredGradients =
           (gradient.squaredNorm() + massRatio * massRatio * sums.squaredSlopes) * inverseGamma * inverseGamma;
       lambda = -constraint / (squaredGradients + epsilon);

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/boundary/handling.h"
 #include "core/sph/kernel_type.h"
 
 namespace migiwa {
@@ -17,13 +18,6 @@ enum class PositionStep {
   paper,         ///< Eq. 10 as printed: pairs only
 };
 inline constexpr std::array<std::string_view, 3> kPositionStepNames{"gradient", "pairs_and_wall", "paper"};
-
-/// How the density is corrected at walls.
-enum class BoundaryHandling {
-  gamma,  ///< [FM] Eq. 5: divided by the part of the kernel that the solid does not cover
-  none,   ///< not at all: the paper's "without correction"; walls only keep centres out
-};
-inline constexpr std::array<std::string_view, 2> kHandlingNames{"gamma", "none"};
 
 /// How the iterations are made to converge in fewer.
 enum class Acceleration { chebyshev, none };

@@ -44,7 +44,7 @@ void moveRange(StepState& state, float weight, std::size_t begin, std::size_t en
   for (std::size_t i = begin; i < end; ++i) {
     Vec3f move = state.lattice.massRatio * sumPairs<Kernel>(state, scale, static_cast<std::uint32_t>(i));
     if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
-      move -= state.lambda[i] * state.density[i] / state.gamma[i] * state.wallSlots[slot].sample.pairGradient;
+      move -= state.wallPush(i) * state.wallSlots[slot].sample.pairGradient;
     Vec3f moved = state.current[i].xyz() + state.supportRadius * move;
     if (weight != 1) {
       const Vec3f before = state.previous[i].xyz();

@@ -81,6 +81,13 @@ struct StepState {
   StageTimes times;
 
   static constexpr std::uint32_t kNoWall = std::numeric_limits<std::uint32_t>::max();
+  /// Whether the walls' part of the density is added, rather than divided by gamma.
+  bool addsWallDensity() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::added; }
+  /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
+  /// times the constraint's derivative with respect to gamma.
+  float wallPush(std::size_t i) const {
+    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / gamma[i];
+  }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }
 };

@@ -1,10 +1,43 @@
 #include "core/study/plan.h"
 
+#include <algorithm>
+
 #include "core/base/checksum.h"
 #include "core/base/state_hash.h"
 #include "core/scene/scene_identity.h"
 
 namespace migiwa {
+
+namespace {
+
+std::vector<std::string> partsAtColons(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ':') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Override> StudyAxis::overrides(const std::string& value) const {
+  const std::vector<std::string> pointers = partsAtColons(pointer);
+  if (pointers.size() == 1) return {{pointer, value}};
+  const std::vector<std::string> parts = partsAtColons(value);
+  std::vector<Override> result;
+  for (std::size_t k = 0; k < std::min(pointers.size(), parts.size()); ++k)
+    result.push_back({pointers[k], parts[k]});
+  return result;
+}
+
+std::string StudyAxis::label(const std::string& value) const {
+  const std::vector<Override> set = overrides(value);
+  return set.back().value;
+}
 
 std::size_t StudyPlan::size() const {
   std::size_t count = 1;
@@ -25,7 +58,10 @@ std::vector<std::string> StudyPlan::values(std::size_t run) const {
 std::vector<Override> StudyPlan::overrides(std::size_t run) const {
   std::vector<Override> result = common;
   const std::vector<std::string> chosen = values(run);
-  for (std::size_t k = 0; k < axes.size(); ++k) result.push_back({axes[k].pointer, chosen[k]});
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::vector<Override> set = axes[k].overrides(chosen[k]);
+    result.insert(result.end(), set.begin(), set.end());
+  }
   return result;
 }
 

@@ -11,10 +11,16 @@
 
 namespace migiwa {
 
-/// One `--vary /pointer=a,b,c`.
+/// One `--vary /pointer=a,b,c`. Settings that belong together vary as one: `/first:/second=a:x,b:y`; a value
+/// with fewer parts than pointers leaves the last of them as they are.
 struct StudyAxis {
   std::string pointer;
-  std::vector<std::string> values;  ///< as an Override has them
+  std::vector<std::string> values;  ///< as an Override has them, or several of them with ':' between
+
+  /// What a value sets.
+  std::vector<Override> overrides(const std::string& value) const;
+  /// What tells a value from the others, in pictures: the last of its parts.
+  std::string label(const std::string& value) const;
 };
 
 struct StudyPlan {

@@ -63,9 +63,10 @@ TEST_F(PanelsTest, StoppedSimulationOffersResetOnly) {
   EXPECT_TRUE(click(260, 40).reset);
 }
 
-TEST_F(PanelsTest, CorrectionIsSwitchedByItsCheckboxAndByItsKey) {
+TEST_F(PanelsTest, HandlingOfWallsIsPickedFromItsListAndSwitchedByItsKey) {
   ASSERT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::gamma);
-  EXPECT_TRUE(click(134, 109).settings);
+  EXPECT_FALSE(click(200, 109).settings) << "opens the list";
+  EXPECT_TRUE(click(200, 159).settings);
   EXPECT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::none);
   EXPECT_TRUE(frame(key(Key::c)).settings);
   EXPECT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::gamma);

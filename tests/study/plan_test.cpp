@@ -31,6 +31,24 @@ TEST(StudyPlan, VariedValuesComeAfterTheCommonOnes) {
   EXPECT_EQ(found[2].pointer + found[2].value, "/boundary/gamma/methodmean");
 }
 
+TEST(StudyPlan, SettingsThatBelongTogetherVaryAsOne) {
+  StudyPlan together = plan();
+  together.axes = {{"/boundary/handling:/boundary/gamma/method", {"gamma:mean", "particles"}}};
+  ASSERT_EQ(together.size(), 2u);
+  const std::vector<Override> both = together.overrides(1), one = together.overrides(2);
+  ASSERT_EQ(both.size(), 3u);
+  EXPECT_EQ(both[1].pointer + "=" + both[1].value, "/boundary/handling=gamma");
+  EXPECT_EQ(both[2].pointer + "=" + both[2].value, "/boundary/gamma/method=mean");
+  ASSERT_EQ(one.size(), 2u) << "the other pointer stays as it is";
+  EXPECT_EQ(one[1].pointer + "=" + one[1].value, "/boundary/handling=particles");
+  EXPECT_EQ(together.axes[0].label("gamma:mean"), "mean");
+  EXPECT_EQ(together.axes[0].label("particles"), "particles");
+  // A colon in a value of one pointer is the value's own.
+  const StudyAxis object{"/effects", {R"({"viscosity":{"xsph":0.1}})"}};
+  ASSERT_EQ(object.overrides(object.values[0]).size(), 1u);
+  EXPECT_EQ(object.overrides(object.values[0])[0].value, object.values[0]);
+}
+
 TEST(StudyPlan, AFingerprintIsOfOneRunOfOneStudy) {
   EXPECT_EQ(runFingerprint(plan(), 1), runFingerprint(plan(), 1));
   EXPECT_NE(runFingerprint(plan(), 1), runFingerprint(plan(), 2));

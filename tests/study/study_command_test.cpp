@@ -154,13 +154,14 @@ TEST_F(StudyCommand, ListNumbersTheRuns) {
 
 TEST_F(StudyCommand, AllFaultsAreReportedAtOnce) {
   std::ofstream(folder_ / "file") << "in the way";
-  const Outcome outcome =
-      run({"study", "tank.json", "--vary", "/solver/max_iteration=2,3", "--vary",
-           "/boundary/gamma/method=auto,guess", "--vary", "/particle_spacing=", "--vary",
-           "/solver/tolerance=0.1,0.1", "--until", "-1", "--repeat", "0", "--out", "file/study"});
+  const Outcome outcome = run({"study", "tank.json", "--vary", "/solver/max_iteration=2,3", "--vary",
+                               "/boundary/gamma/method=auto,guess", "--vary", "/particle_spacing=", "--vary",
+                               "/solver/tolerance=0.1,0.1", "--vary",
+                               "/boundary/handling:/boundary/gamma/method=gamma:auto:3,none", "--until", "-1",
+                               "--repeat", "0", "--out", "file/study"});
   EXPECT_EQ(outcome.code, 2);
-  for (const char* piece : {"max_iteration", "guess", "/particle_spacing=", "0.1 again", "--until",
-                            "--repeat", "--out: expected a folder, found the file"})
+  for (const char* piece : {"max_iteration", "guess", "/particle_spacing=", "0.1 again", "gamma:auto:3",
+                            "--until", "--repeat", "--out: expected a folder, found the file"})
     EXPECT_NE(outcome.err.find(piece), std::string::npos) << piece << " in\n" << outcome.err;
   EXPECT_FALSE(fs::exists(folder_ / "study.csv"));
 }
