@@ -18,8 +18,8 @@ constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#
                                              "#8a6d00", "#56b4e9", "#5b3f8c", "#777777"};
 
 struct Point {
-  double cost, least, most, error;
-  std::string note;  ///< what tells it from the others of its line
+  double cost, least, most, error;  ///< least and most: about the middle half of whole repetitions
+  std::string note;                 ///< what tells it from the others of its line
 };
 
 struct Line {
@@ -52,8 +52,20 @@ bool isNumber(const std::string& text) {
 
 std::string noteOf(const StudyPlan& plan, const FinishedRun& run, std::size_t from) {
   std::string note;
-  for (std::size_t k = from; k < plan.axes.size(); ++k) note += (k > from ? ", " : "") + plan.axes[k].label(run.values[k]);
+  for (std::size_t k = from; k < plan.axes.size(); ++k)
+    note += (k > from ? ", " : "") + plan.axes[k].label(run.values[k]);
   return note;
+}
+
+/// Wall time a simulated second (ms) that this part of the repetitions stays below.
+double repetitionTime(const RunRecord& record, double part) {
+  std::vector<double> times;
+  for (const RunTiming& timing : record.timings) times.push_back(timing.wallMsPerSecond);
+  std::sort(times.begin(), times.end());
+  const double place = part * static_cast<double>(times.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, times.size() - 1);
+  return std::lerp(times[below], times[above], place - static_cast<double>(below));
 }
 
 /// One line for each value of the first axis. A single axis of numbers is one line, of names a point each.
@@ -70,11 +82,8 @@ std::vector<Line> linesOf(const StudyPlan& plan, const std::vector<FinishedRun>&
     if (!error || *error <= 0) continue;
     const auto value = std::find(first.values.begin(), first.values.end(), run.values.front());
     Point point{runCost(run.record), 0, 0, *error, noteOf(plan, run, single ? 0 : 1)};
-    point.least = point.most = point.cost;
-    for (const RunTiming& timing : run.record.timings) {
-      point.least = std::min(point.least, timing.wallMsPerSecond);
-      point.most = std::max(point.most, timing.wallMsPerSecond);
-    }
+    point.least = std::min(point.cost, repetitionTime(run.record, 0.25));
+    point.most = std::max(point.cost, repetitionTime(run.record, 0.75));
     lines[single ? 0 : static_cast<std::size_t>(value - first.values.begin())].points.push_back(point);
   }
   return lines;
@@ -154,12 +163,13 @@ bool plotStudy(const std::filesystem::path& png, const StudyPlan& plan, const st
          << "set logscale xy\nset xrange [" << x.low << ':' << x.high << "]\nset yrange [" << y.low << ':'
          << y.high << "]\nset xlabel 'wall time a simulated second (ms)'\nset ylabel "
          << quoted(measure.title + (measure.unit.empty() ? "" : " (" + measure.unit + ")"))
-         << "\nset format x '%.4g'\nset format y '%.3g'\n"
+         << "\nset format x '%.6g'\nset format y '%.3g'\n"
          << "set xtics add auto\nset mxtics 10\nset grid xtics ytics mxtics mytics linecolor rgb '#d8d8d8', "
             "linecolor rgb '#ececec'\nset key bottom left box linecolor rgb '#bbbbbb' opaque\n";
-  // A range within one decade has hardly a tick of its own on a logarithmic axis.
+  // A range within one or two decades has hardly a tick of its own on a logarithmic axis.
   const auto ticks = [&](const char* axis, const LogAxis& range) {
-    if (range.high / range.low > 30) return;
+    const double span = range.high / range.low;
+    if (span > 200) return;
     script << "set " << axis << "tics (";
     bool any = false;
     for (int decade = static_cast<int>(std::floor(std::log10(range.low))); decade <= std::log10(range.high);
@@ -167,6 +177,7 @@ bool plotStudy(const std::filesystem::path& png, const StudyPlan& plan, const st
       for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0}) {
         const double at = digit * std::pow(10, decade);
         if (at < range.low || at > range.high) continue;
+        if (span > 20 && digit != 1 && digit != 2 && digit != 5) continue;
         script << (any ? ", " : "") << at;
         any = true;
       }

@@ -1,29 +1,17 @@
-// Studies as a user runs them: in one go, in parts, interrupted, merged, and with mistakes.
+// Studies as a user runs them: in one go, in parts, merged, and with mistakes.
 #include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include "core/study/table.h"
-#include "tests/support/program.h"
+#include "tests/study/study_program.h"
 
 namespace migiwa::testing {
 namespace {
 
-namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
-
-class StudyCommand : public ProgramTest {
+class StudyCommand : public StudyProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
@@ -43,30 +31,6 @@ class StudyCommand : public ProgramTest {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-
-  static Words cells(const std::string& line) {
-    Words result;
-    std::istringstream in(line);
-    for (std::string cell; std::getline(in, cell, ',');) result.push_back(cell);
-    return result;
-  }
-
-  /// The table less what depends on how it came about.
-  std::string table(const std::string& out) const {
-    std::istringstream in(readAll(folder_ / out / "study.csv"));
-    std::string text, line;
-    Words names;
-    while (std::getline(in, line)) {
-      const Words row = cells(line);
-      if (names.empty()) names = row;
-      for (std::size_t k = 0; k < row.size(); ++k)
-        if (!isTimeColumn(names.at(k))) text += row[k] + ",";
-      text += "\n";
-    }
-    return text;
-  }
-
-  void expectDone(const Outcome& outcome) const { EXPECT_EQ(outcome.code, 0) << outcome.err; }
 };
 
 TEST_F(StudyCommand, WritesTableSummaryAndPictures) {
@@ -100,33 +64,6 @@ TEST_F(StudyCommand, InPartsInterruptedAndMergedItIsTheSame) {
   EXPECT_NE(missing.err.find("none of 3, 4"), std::string::npos) << missing.err;
   expectDone(run(study("joined", {"--merge", "left", "right"})));
   EXPECT_EQ(table("joined"), whole);
-}
-
-TEST_F(StudyCommand, KilledTwiceItGoesOn) {
-  expectDone(run(study("all")));
-  for (int kill = 1; kill <= 2; ++kill) {
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder_.c_str()) != 0) _exit(126);
-      Words words = study("killed", {"--quiet"});
-      words.insert(words.begin(), MIGIWA_PROGRAM);
-      std::vector<char*> pointers;
-      for (std::string& word : words) pointers.push_back(word.data());
-      pointers.push_back(nullptr);
-      if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
-      execv(MIGIWA_PROGRAM, pointers.data());
-      _exit(127);
-    }
-    // Wherever it is then: the table has to be the same.
-    const fs::path awaited = folder_ / "killed" / "runs" / (std::to_string(kill) + ".json");
-    int status = 0;
-    while (!fs::exists(awaited) && waitpid(child, &status, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    ::kill(child, SIGKILL);
-    waitpid(child, &status, 0);
-  }
-  expectDone(run(study("killed")));
-  EXPECT_EQ(table("killed"), table("all"));
 }
 
 TEST_F(StudyCommand, AnotherStudysRunsAreRefused) {
