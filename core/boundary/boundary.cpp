@@ -15,11 +15,18 @@ Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfa
     moving_.push_back(std::make_shared<MovingSurface>(surface, group));
     surface = moving_.back();
   }
+  steady_ = standsSteadily();
+}
+
+bool Boundary::standsSteadily() const {
+  return moving_.empty() && std::all_of(surfaces_.begin(), surfaces_.end(),
+                                        [](const auto& surface) { return surface->steadyDistance(); });
 }
 
 Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) {
   Boundary boundary;
   boundary.surfaces_ = std::move(surfaces);
+  boundary.steady_ = boundary.standsSteadily();
   return boundary;
 }
 

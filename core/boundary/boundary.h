@@ -31,6 +31,10 @@ class Boundary {
     return moving_.empty() ? Vec3f(Vec3f::Zero()) : nearestVelocity(p);
   }
 
+  /// Whether a distance measured once goes on to tell how near walls can be: they stand still, and
+  /// Surface::steadyDistance() holds for all of them.
+  bool steady() const { return steady_; }
+
   bool empty() const { return surfaces_.empty(); }
   const std::vector<std::shared_ptr<const Surface>>& surfaces() const { return surfaces_; }
 
@@ -45,9 +49,11 @@ class Boundary {
  private:
   Vec3f nearestVelocity(const Vec3f& p) const;
   bool projectInTurn(Vec3f& p, float margin, bool& fits) const;
+  bool standsSteadily() const;
 
   std::vector<std::shared_ptr<const Surface>> surfaces_;
   std::vector<std::shared_ptr<MovingSurface>> moving_;  ///< those among them that move
+  bool steady_ = true;
 };
 
 }  // namespace migiwa

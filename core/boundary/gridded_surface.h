@@ -10,6 +10,8 @@
 namespace migiwa {
 
 class GriddedSurface final : public Surface {
+  using Grid = SplineGrid<1>;
+
  public:
   /// Cells along a support radius, and support radii around the wall that have a grid.
   static constexpr float kCellsPerSupport = 5, kReach = 1.6F;
@@ -19,6 +21,7 @@ class GriddedSurface final : public Surface {
   std::shared_ptr<const Surface> exact() const override { return shape_; }
 
   void describe(FieldVisitor&) override {}  // the scene describes the shape itself
+  bool steadyDistance() const override { return !grid_.coefficients.empty(); }
   /// Within kReach of the wall, that of the splines: off by about 0.001 support radii where the wall is
   /// smooth and by 0.02 next to creases, which it rounds. Farther out in the fluid no more than kReach, and
   /// deep in the solid the shape's own.
@@ -39,9 +42,7 @@ class GriddedSurface final : public Surface {
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return shape_->planar(); }
   PieceRule pieceRule() const override { return shape_->pieceRule(); }
-  void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override {
-    shape_->pieces(p, reach, out);
-  }
+  void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   Bounds bounds() const override { return shape_->bounds(); }
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
     shape_->wireframe(scene, out);
@@ -51,20 +52,15 @@ class GriddedSurface final : public Surface {
   const BoxGeometry* tank() const override { return shape_->tank(); }
 
  private:
-  /// Where a point lies in the grid; outside of it in its last block.
-  struct Place {
-    std::size_t block;  ///< among grid_.blocks
-    std::size_t node;   ///< first of those about the cell, in the block
-    Vec3f within;       ///< the cell, in [0, 1)
-  };
-  Place placeOf(const Vec3f& p) const;
   /// The spline's value and unit gradient, in a block that has coefficients.
-  float interpolate(const Place& place, Vec3f& normal) const;
+  float interpolate(const Grid::Place& place, Vec3f& normal) const;
+  /// Whether the wall is certainly farther than `reach` from p.
+  bool outOfReach(const Vec3f& p, float reach) const;
 
   std::shared_ptr<const Surface> shape_;
-  SplineGrid<1> grid_;
+  Grid grid_;
   std::vector<float> least_;  ///< distance (m) that every point of a block has
-  float reach_, inverseCell_ = 1;
+  float reach_;
 };
 
 /// The surfaces, those with costly distances behind grids for this support radius (m). Where a grid would

@@ -20,6 +20,8 @@ class Polynomial final : public Surface {
              std::vector<Term> terms);
 
   void describe(FieldVisitor& visitor) override;
+  /// Around the ball in which the wall exists they jump.
+  bool steadyDistance() const override { return false; }
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;

@@ -19,6 +19,8 @@ class SlimSurface : public Surface {
 
   void describe(FieldVisitor& visitor) override;
   bool costlyDistance() const override { return data_ && data_->model->closed(); }
+  /// Not without a grid: nodes end, and are looked at closely only near the surface.
+  bool steadyDistance() const override { return false; }
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;

@@ -24,21 +24,45 @@ struct SplineGrid {
   Vec3f origin = Vec3f::Zero();        ///< first corner of the first block (m)
   float cell = 1;                      ///< (m)
   std::array<std::int32_t, 3> size{};  ///< blocks along x, y, z
-  std::vector<std::int32_t> blocks;  ///< of every block, x fastest: its place in `coefficients`, or why none
-  std::vector<float> coefficients;   ///< kBlockFloats for each block that has some
+  std::vector<std::int32_t> blocks;   ///< of every block, x fastest: its place in `coefficients`, or why none
+  std::int32_t outside = kElsewhere;  ///< what holds around the grid
+  std::vector<float> coefficients;    ///< kBlockFloats for each block that has some
 
   float blockEdge() const { return static_cast<float>(kCells) * cell; }
 
-  /// The block that holds p, kElsewhere outside the grid.
-  std::int32_t blockAt(const Vec3f& p) const {
-    const Vec3f at = (p - origin) / cell;
-    std::size_t index = 0;
-    for (int axis = 2; axis >= 0; --axis) {
-      const auto along = static_cast<std::size_t>(axis);
-      if (!(at[axis] >= 0 && at[axis] < static_cast<float>(size[along] * kCells))) return kElsewhere;
-      index = index * static_cast<std::size_t>(size[along]) + static_cast<std::size_t>(at[axis]) / kCells;
+  /// Where a point lies.
+  struct Place {
+    std::size_t block;   ///< among blocks; their number: outside of the grid
+    std::int32_t state;  ///< what `blocks` says of it, or `outside`
+    std::int32_t node;   ///< first of the 4 x 4 x 4 about the cell, among the block's
+    Vec3f within;        ///< the cell, in [0, 1)
+  };
+
+  Place placeOf(const Vec3f& p) const {
+    const Vec3f at = (p - origin) * (1 / cell);
+    Place place{0, outside, 0, Vec3f::Zero()};
+    std::size_t stride = 1;
+    std::int32_t nodeStride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t count = size[static_cast<std::size_t>(axis)];
+      if (!(at[axis] >= 0 && at[axis] < static_cast<float>(count * kCells))) {
+        place.block = blocks.size();
+        return place;
+      }
+      const auto whole = static_cast<std::int32_t>(at[axis]);
+      place.within[axis] = at[axis] - static_cast<float>(whole);
+      place.block += stride * static_cast<std::size_t>(whole / kCells);
+      place.node += nodeStride * (whole % kCells);
+      stride *= static_cast<std::size_t>(count);
+      nodeStride *= kNodes;
     }
-    return blocks[index];
+    place.state = blocks[place.block];
+    return place;
+  }
+  /// The first coefficient about the cell, in a block that has some.
+  const float* about(const Place& place) const {
+    return &coefficients[static_cast<std::size_t>(place.state) * kBlockFloats +
+                         Channels * static_cast<std::size_t>(place.node)];
   }
 };
 

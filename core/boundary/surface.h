@@ -60,6 +60,9 @@ class Surface {
   /// Signed distance of p, and the unit normal at the nearest point of the wall.
   virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
 
+  /// Whether the fluid's distances are those of a closed solid, without jumps, so that how far a point can
+  /// have come bounds how much nearer it is.
+  virtual bool steadyDistance() const { return true; }
   /// Whether distance() takes so long that a grid in its place pays: true only for a solid that is closed.
   virtual bool costlyDistance() const { return false; }
   /// The shape itself where this one stands for it with approximate distances; null where it is exact.

@@ -30,7 +30,8 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
             continue;
           }
           part.maxSpeed = std::max(part.maxSpeed, velocity.norm());
-          const float penetration = -state.boundary.distance(position);
+          const bool clear = particles.position[i].w > 0;
+          const float penetration = clear ? 0 : -state.boundary.distance(position);
           part.maxPenetration = std::max(part.maxPenetration, penetration);
           const bool out = !limits.scene.empty() && !limits.scene.contains(position.cast<double>());
           if (out || static_cast<double>(penetration) > limits.mostPenetration) {

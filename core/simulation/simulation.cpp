@@ -97,6 +97,7 @@ void Simulation::State::configure() {
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();
   step.wallSlot.clear();
+  for (Float4& position : step.particles.position) position.w = 0;  // walls may have other grids now
   effects = EffectPipeline(scene.effects);
   info.spacing = step.spacing;
   info.supportRadius = step.supportRadius;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/solver/clearance.h"
 #include "core/solver/stages.h"
 
 namespace migiwa::stages {
@@ -14,14 +15,18 @@ constexpr float kWatchReach = 1.5F;
 /// gamma is taken as linear over moves up to this many support radii.
 constexpr float kLinearReach = 0.05F;
 
-/// Evaluates the slots' samples at their points, a batch at a time.
-void evaluate(const GammaMethod& method, std::span<WallSlot> slots) {
+/// Evaluates the slots' samples at their points, a batch at a time. Without a method the distances alone.
+void evaluate(const StepState& state, std::span<WallSlot> slots) {
+  if (state.gammaMethod == nullptr) {
+    for (WallSlot& slot : slots) slot.sample.distance = state.boundary.distance(slot.at.xyz());
+    return;
+  }
   std::array<Float4, 64> points;
   std::array<GammaSample, 64> samples;
   for (std::size_t begin = 0; begin < slots.size(); begin += points.size()) {
     const std::size_t n = std::min(points.size(), slots.size() - begin);
     for (std::size_t k = 0; k < n; ++k) points[k] = slots[begin + k].at;
-    method.evaluate(std::span(points).first(n), std::span(samples).first(n));
+    state.gammaMethod->evaluate(std::span(points).first(n), std::span(samples).first(n));
     for (std::size_t k = 0; k < n; ++k) slots[begin + k].sample = samples[k];
   }
 }
@@ -52,6 +57,20 @@ bool carryAlong(const StepState& state, const Vec3f& p, WallSlot& slot) {
   return true;
 }
 
+/// The clearance (m) of a particle that has no wall slot yet.
+float clearanceOnTheWay(const StepState& state, std::size_t i) {
+  if (!state.boundary.steady()) return 0;
+  const Float4& start = state.particles.position[i];
+  return clearanceAt(state.current[i].xyz(), start.xyz(), start.w);
+}
+
+/// Has the particle know at the place where its step began what was measured on the way.
+void remember(StepState& state, const WallSlot& slot) {
+  if (!state.boundary.steady()) return;
+  Float4& start = state.particles.position[slot.particle];
+  start.w = std::max(start.w, clearanceAt(start.xyz(), slot.at.xyz(), slot.sample.distance));
+}
+
 float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius) {
   return std::min(slot.sample.gamma + slot.sample.gradient.dot(moved) / supportRadius, 1.0F);
 }
@@ -78,7 +97,7 @@ void evaluateGamma(StepState& state) {
     std::vector<WallSlot> known, fresh;  // each in the order of the particles
   };
   std::vector<Found> found(chunkCount(n));
-  const float reach = kLinearReach * state.supportRadius;
+  const float reach = kLinearReach * state.supportRadius, watchReach = kWatchReach * state.supportRadius;
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     auto& [known, fresh] = found[chunk];
     for (std::size_t i = begin; i < end; ++i) {
@@ -94,12 +113,11 @@ void evaluateGamma(StepState& state) {
           continue;
         }
       }
-      const float distance = state.boundary.distance(p);
-      if (distance >= kWatchReach * state.supportRadius) continue;
-      fresh.push_back({particle, state.current[i], {}});
-      fresh.back().sample.distance = distance;
+      if (clearanceOnTheWay(state, i) < watchReach) fresh.push_back({particle, Float4(p), {}});
     }
-    if (state.gammaMethod != nullptr) evaluate(*state.gammaMethod, fresh);
+    evaluate(state, fresh);
+    for (const WallSlot& slot : fresh) remember(state, slot);
+    std::erase_if(fresh, [&](const WallSlot& slot) { return slot.sample.distance >= watchReach; });
   });
 
   // One after the other, each chunk from where those before it end.
@@ -137,7 +155,7 @@ void refreshGamma(StepState& state) {
           Vec3f moved = state.current[slot.particle].xyz() - slot.at.xyz();
           if (moved.squaredNorm() > reach * reach) {
             slot.at = state.current[slot.particle];
-            evaluate(*state.gammaMethod, {&slot, 1});
+            evaluate(state, {&slot, 1});
             moved.setZero();
           }
           float& gamma = state.gamma[slot.particle];

@@ -20,7 +20,7 @@ namespace migiwa {
 
 /// What lasts from step to step.
 struct Particles {
-  std::vector<Float4> position;  ///< (m)
+  std::vector<Float4> position;  ///< (m); w: a clearance to walls (m) that it has at least, 0: not known
   std::vector<Float4> velocity;  ///< (m/s)
   std::vector<std::uint32_t> id;
   std::size_t size() const { return id.size(); }

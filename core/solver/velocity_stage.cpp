@@ -1,3 +1,4 @@
+#include "core/solver/clearance.h"
 #include "core/solver/stages.h"
 
 namespace migiwa::stages {
@@ -8,8 +9,9 @@ void updateVelocities(StepState& state) {
   parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f solved = state.current[i].xyz();
+      const float clearance = knownClearance(state, i, solved);
       particles.velocity[i] = Float4((solved - particles.position[i].xyz()) * inverseStep);
-      particles.position[i] = Float4(solved);
+      particles.position[i] = Float4(solved, clearance);
     }
   });
 }

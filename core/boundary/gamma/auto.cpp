@@ -51,20 +51,30 @@ class AutoGamma final : public GammaMethod {
     std::array<std::vector<std::size_t>, 2> picked;
     HalfSpaces walls;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!flat_) {
-        picked[pick(points[i].xyz(), walls)].push_back(i);
-      } else if (flat_->obliqueAt(points[i].xyz())) {
-        picked[kDirections].push_back(i);
+      const Vec3f p = points[i].xyz();
+      if (flat_) {
+        if (flat_->obliqueAt(p)) picked[kDirections].push_back(i);
+        continue;
       }
+      out[i] = GammaSample{};
+      out[i].distance = boundary_.distance(p);
+      if (out[i].distance < support_) picked[pick(p, walls)].push_back(i);
     }
     std::vector<Float4> at;
     std::vector<GammaSample> samples;
     for (std::size_t method = 0; method < picked.size(); ++method) {
       if (picked[method].empty()) continue;
       at.clear();
-      for (const std::size_t i : picked[method]) at.push_back(points[i]);
-      samples.resize(at.size());
-      methods_[method]->evaluate(at, samples);
+      samples.clear();
+      for (const std::size_t i : picked[method]) {
+        at.push_back(points[i]);
+        samples.push_back(out[i]);
+      }
+      if (method == kDirections && grid_ != nullptr) {
+        grid_->evaluateMeasured(at, samples);
+      } else {
+        methods_[method]->evaluate(at, samples);
+      }
       for (std::size_t k = 0; k < at.size(); ++k) out[picked[method][k]] = samples[k];
     }
   }

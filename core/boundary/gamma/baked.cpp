@@ -63,22 +63,29 @@ class BakedGamma final : public GridGamma {
   }
 
   GammaChoice choice() const override { return {"baked", reason_}; }
-  bool covers(const Vec3f& p) const override { return laidOut() && grid_.blockAt(p) >= 0; }
+  bool covers(const Vec3f& p) const override { return laidOut() && grid_.placeOf(p).state >= 0; }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
-    std::array<std::int32_t, kBatch> blocks;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out[i] = GammaSample{};
+      out[i].distance = boundary_.distance(points[i].xyz());
+    }
+    evaluateMeasured(points, out);
+  }
+
+  void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    std::array<GammaGrid::Place, kBatch> places;
     for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
       const std::size_t count = std::min(kBatch, points.size() - begin);
       const auto at = points.subspan(begin, count);
       const auto samples = out.subspan(begin, count);
       for (std::size_t i = 0; i < count; ++i) {
-        const Vec3f p = at[i].xyz();
-        samples[i] = GammaSample{};
-        samples[i].distance = boundary_.distance(p);
-        blocks[i] = samples[i].distance < support_ ? grid_.blockAt(p) : GammaGrid::kFar;
-        if (blocks[i] == GammaGrid::kElsewhere) elsewhere_->evaluate(at.subspan(i, 1), samples.subspan(i, 1));
+        places[i].state = GammaGrid::kFar;
+        if (samples[i].distance < support_) places[i] = grid_.placeOf(at[i].xyz());
+        if (places[i].state == GammaGrid::kElsewhere)
+          elsewhere_->evaluate(at.subspan(i, 1), samples.subspan(i, 1));
       }
-      interpolate(grid_, support_, at, std::span(blocks).first(count), samples);
+      interpolate(grid_, support_, std::span(places).first(count), samples);
     }
   }
 

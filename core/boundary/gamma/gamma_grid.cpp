@@ -13,14 +13,22 @@ namespace migiwa::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-HWY_INLINE void interpolateAt(const float* HWY_RESTRICT block, const Vec3f& at,
-                              const std::array<int, 3>& cell, float toGradient, GammaSample& sample) {
+constexpr int kRow = 2 * GammaGrid::kNodes, kLayer = kRow * GammaGrid::kNodes;
+/// So many points ahead coefficients are fetched: most are in no near cache.
+constexpr std::size_t kAhead = 4;
+
+HWY_INLINE void prefetch(const float* from) {
+  constexpr int kLineFloats = 16;
+  for (int layer = 0; layer < 4; ++layer)
+    for (int at = 0; at < 3 * kRow + 8; at += kLineFloats) __builtin_prefetch(from + layer * kLayer + at);
+}
+
+HWY_INLINE void interpolateAt(const float* HWY_RESTRICT from, const Vec3f& within, float toGradient,
+                              GammaSample& sample) {
   using D = hn::CappedTag<float, 8>;
   const D d;
   constexpr std::size_t kParts = 8 / hn::MaxLanes(d);
-  const SplineWeights wx(at.x()), wy(at.y()), wz(at.z());
-  constexpr int kRow = 2 * GammaGrid::kNodes, kLayer = kRow * GammaGrid::kNodes;
-  const float* from = block + cell[2] * kLayer + cell[1] * kRow + 2 * cell[0];
+  const SplineWeights wx(within.x()), wy(within.y()), wz(within.z());
   // Four nodes of a row are eight floats: both kernels at once.
   alignas(32) float value[8], alongY[8], alongZ[8];
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -59,20 +67,13 @@ HWY_INLINE void interpolateAt(const float* HWY_RESTRICT block, const Vec3f& at,
   sample.pairGradient = toGradient * pairGradient;
 }
 
-void interpolateBatch(const GammaGrid& grid, float supportRadius, std::span<const Float4> points,
-                      std::span<const std::int32_t> blocks, std::span<GammaSample> out) {
+void interpolateBatch(const GammaGrid& grid, float supportRadius, std::span<const GammaGrid::Place> places,
+                      std::span<GammaSample> out) {
   const float toGradient = supportRadius / grid.cell;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (blocks[i] < 0) continue;
-    Vec3f at = (points[i].xyz() - grid.origin) / grid.cell;  // as blockAt() has it, to the last bit
-    std::array<int, 3> cell{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const int whole = static_cast<int>(at[axis]);
-      at[axis] -= static_cast<float>(whole);
-      cell[static_cast<std::size_t>(axis)] = whole % GammaGrid::kCells;
-    }
-    interpolateAt(&grid.coefficients[static_cast<std::size_t>(blocks[i]) * GammaGrid::kBlockFloats], at, cell,
-                  toGradient, out[i]);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (const std::size_t next = i + kAhead; next < places.size() && places[next].state >= 0)
+      prefetch(grid.about(places[next]));
+    if (places[i].state >= 0) interpolateAt(grid.about(places[i]), places[i].within, toGradient, out[i]);
   }
 }
 
@@ -84,9 +85,9 @@ namespace migiwa {
 
 HWY_EXPORT(interpolateBatch);
 
-void interpolate(const GammaGrid& grid, float supportRadius, std::span<const Float4> points,
-                 std::span<const std::int32_t> blocks, std::span<GammaSample> out) {
-  HWY_DYNAMIC_DISPATCH(interpolateBatch)(grid, supportRadius, points, blocks, out);
+void interpolate(const GammaGrid& grid, float supportRadius, std::span<const GammaGrid::Place> places,
+                 std::span<GammaSample> out) {
+  HWY_DYNAMIC_DISPATCH(interpolateBatch)(grid, supportRadius, places, out);
 }
 
 }  // namespace migiwa

@@ -12,9 +12,9 @@ namespace migiwa {
 /// Channels: gamma for the density kernel, and for the kernel of the pair gradients.
 using GammaGrid = SplineGrid<2>;
 
-/// Interpolates at points that lie in blocks with coefficients: gamma and gradients, not the distance.
-/// blocks[i] is blockAt(points[i]); points in other blocks are left alone.
-void interpolate(const GammaGrid& grid, float supportRadius, std::span<const Float4> points,
-                 std::span<const std::int32_t> blocks, std::span<GammaSample> out);
+/// Interpolates at places in blocks with coefficients: gamma and gradients, not the distance. Samples of
+/// other places are left alone.
+void interpolate(const GammaGrid& grid, float supportRadius, std::span<const GammaGrid::Place> places,
+                 std::span<GammaSample> out);
 
 }  // namespace migiwa

@@ -12,6 +12,8 @@ class GridGamma : public GammaMethod {
  public:
   /// Whether gamma at p comes from the grid.
   virtual bool covers(const Vec3f& p) const = 0;
+  /// evaluate() for samples that hold their distances already, and otherwise nothing.
+  virtual void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
 };
 
 /// gamma of the closest wall alone, as if it were an infinite plane.
