@@ -6,13 +6,16 @@ namespace migiwa::stages {
 
 namespace {
 
+/// What lies right at the margin a shape may still move by the last bit: so much more is certainly enough.
+constexpr float kAmple = 1.001F;
+
 /// Puts particle i, which came from `from`, where it was at the start of the step or since, back on the fluid
 /// side.
 void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan) {
   Vec3f p = state.current[i].xyz();
   // How far it may have to be from walls for them not to be in its way.
   const float onTheWay = state.barringWalls.empty() ? 0 : kSteepestDistance * (p - from.xyz()).norm();
-  if (knownClearance(state, i, p) >= state.wallMargin() + onTheWay) return;
+  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return;
   if (!state.barringWalls.empty())
     p = heldBack(state.barringWalls, from.xyz(), stepBegan, p, state.wallMargin());
   state.boundary.project(p, state.wallMargin());

@@ -119,7 +119,10 @@ bool sameBits(std::span<const T> a, std::span<const T> b) {
 }
 
 void expectSameView(const FrameView& a, const FrameView& b) {
-  EXPECT_TRUE(sameBits(a.positions, b.positions));
+  // Their fourth lane holds what is known of walls, which a run that goes on learns anew.
+  EXPECT_EQ(a.positions.size(), b.positions.size());
+  for (std::size_t k = 0; k < std::min(a.positions.size(), b.positions.size()); ++k)
+    ASSERT_EQ(a.positions[k].xyz(), b.positions[k].xyz()) << k;
   EXPECT_TRUE(sameBits(a.velocities, b.velocities));
   EXPECT_TRUE(sameBits(a.density, b.density));
   EXPECT_TRUE(sameBits(a.gamma, b.gamma));
