@@ -72,6 +72,56 @@ TEST(WallFriction, ALayerStaysOnASlopeUpToItsAngleAndSlidesBeyond) {
   EXPECT_NEAR(meanVelocity(beyond), 0.5 * acceleration, 0.03 * 0.5 * acceleration);
 }
 
+/// A bar in the corner of two walls, between which gravity points: `degrees` is the angle that they enclose.
+Scene barInGroove(double degrees, double velocity, const std::string& effects) {
+  Scene scene = emptyScene();
+  const double half = 0.5 * degrees * std::numbers::pi / 180;
+  scene.gravity = {0, -kGravity, 0};
+  // Each wall is half a spacing away from a row of particles along z.
+  const double height = 0.5 * kSpacing / std::sin(half);
+  addFluid(scene, {-0.5 * kSpacing, height - 0.5 * kSpacing, 0},
+           {0.5 * kSpacing, height + 0.5 * kSpacing, 8 * kSpacing}, {0, 0, velocity});
+  for (const double side : {-1.0, 1.0})
+    scene.surfaces.push_back(
+        std::make_shared<Plane>(Vec3d::Zero(), Vec3d(side * std::cos(half), std::sin(half), 0)));
+  scene.effects = effectsOf(effects);
+  return scene;
+}
+
+double meanVelocityAlongGroove(const Simulation& simulation) {
+  return momentsOf(simulation.view()).momentum.z() / static_cast<double>(simulation.view().positions.size());
+}
+
+TEST(WallFriction, InAGrooveBothWallsBrake) {
+  // Each wall bears N with 2 N sin(half) = weight: friction is mu / sin(half) of the weight.
+  for (const double degrees : {90.0, 60.0, 120.0}) {
+    constexpr double kFriction = 0.2, kTime = 0.2;
+    Simulation simulation(barInGroove(degrees, 1, R"({"wall_friction": {"coefficient": 0.2}})"), 1);
+    runFor(simulation, kTime);
+    const double deceleration = kFriction * kGravity / std::sin(0.5 * degrees * std::numbers::pi / 180);
+    EXPECT_NEAR(1 - meanVelocityAlongGroove(simulation), deceleration * kTime, 0.03 * deceleration * kTime)
+        << "between walls at " << degrees << " degrees";
+  }
+}
+
+TEST(WallFriction, OfTwoWallsEachDragsByItsOwnMove) {
+  // One wall moves along the groove, the other stands: pushes are equal, so are their frictions, and
+  // a bar at any speed in between is neither sped up nor braked.
+  constexpr double kWall = 0.8;
+  Scene scene = barInGroove(90, 0.3, R"({"wall_friction": {"coefficient": 0.25}})");
+  auto wall = std::make_shared<Plane>(Vec3d::Zero(), Vec3d(-1, 1, 0));
+  Motion motion;
+  motion.velocity = {0, 0, kWall};
+  wall->motion = motion;
+  scene.surfaces[0] = wall;
+  for (const bool swapped : {false, true}) {
+    if (swapped) std::swap(scene.surfaces[0], scene.surfaces[1]);
+    Simulation simulation(scene, 1);
+    runFor(simulation, 0.3);
+    EXPECT_NEAR(meanVelocityAlongGroove(simulation), 0.3, 1e-3);
+  }
+}
+
 TEST(WallFriction, AMovingWallDragsALayerAlong) {
   constexpr double kWall = 0.8, kFriction = 0.25;
   Scene scene = layer(1, 0, 0, R"({"wall_friction": {"coefficient": 0.25}})");
