@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "core/simulation/frame_view.h"
@@ -16,8 +17,10 @@ struct SceneEditor;
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
   bool playing = false;
-  bool stopped = false;  ///< it stopped itself and cannot go on
-  std::string trouble;   ///< why
+  bool stopped = false;     ///< it stopped itself and cannot go on
+  std::string trouble;      ///< why
+  std::string stateNote{};  ///< one line on what became of the last wish to save or load the state
+  std::vector<std::string> stateFaults{};  ///< why it was not done; empty when it was
 };
 
 /// How the scene is looked at.
@@ -35,6 +38,7 @@ struct Wishes {
   bool play = false, pause = false, step = false, reset = false;
   bool settings = false;  ///< the settings were changed
   bool savePicture = false;
+  bool saveState = false, loadState = false;
 };
 
 struct PanelModel {

@@ -1,9 +1,36 @@
+#include <algorithm>
+
 #include "app/ui/number_text.h"
 #include "app/ui/panels.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
 
 namespace migiwa {
+
+namespace {
+
+/// What hinders is listed as far as the panels below stay in sight.
+constexpr std::size_t kMostListed = 4;
+
+void stateButtons(PanelModel& model) {
+  const float width = buttonWidth(2);
+  ImGui::BeginDisabled(model.run.stopped);
+  if (ImGui::Button("Save state", {width, 0})) model.wishes.saveState = true;
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  if (ImGui::Button("Load state", {width, 0})) model.wishes.loadState = true;
+  const RunStatus& run = model.run;
+  if (run.stateNote.empty()) return;
+  if (run.stateFaults.empty()) return faintText(run.stateNote);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::TextWrapped("%s", run.stateNote.c_str());
+  const std::size_t listed = std::min(run.stateFaults.size(), kMostListed);
+  for (std::size_t k = 0; k < listed; ++k) ImGui::TextWrapped("%s", run.stateFaults[k].c_str());
+  if (listed < run.stateFaults.size()) ImGui::TextWrapped("and %zu more", run.stateFaults.size() - listed);
+  ImGui::PopStyleColor();
+}
+
+}  // namespace
 
 void simulationPanel(PanelModel& model) {
   const float width = buttonWidth(3);
@@ -24,6 +51,8 @@ void simulationPanel(PanelModel& model) {
     ImGui::TextWrapped("Stopped: %s", model.run.trouble.c_str());
     ImGui::PopStyleColor();
   }
+  // As with the scene's text: only where there is a file beside which the state can lie.
+  if (model.editor != nullptr) stateButtons(model);
 }
 
 }  // namespace migiwa

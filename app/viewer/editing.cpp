@@ -73,6 +73,11 @@ void carryOut(SceneEditor& editor, SceneSession& session, const Settings& settin
   }
 }
 
+void keepState(const Wishes& wishes, const SceneSession& session, SimulationThread& simulation) {
+  if (wishes.saveState) simulation.saveState(session.stateFile(), session.overrides());
+  if (wishes.loadState) simulation.loadState(session.stateFile());
+}
+
 void takeOver(SceneChange& change, Viewer& viewer, std::unique_ptr<SimulationThread>& simulation) {
   if (!change.simulation) {
     viewer.replaceScene(*change.scene, std::nullopt);

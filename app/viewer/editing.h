@@ -1,4 +1,4 @@
-// Between the editor in the window, the scene's file, and the simulation that runs.
+// Between the window, the scene's file and what lies beside it, and the simulation that runs.
 #pragma once
 
 #include <memory>
@@ -18,6 +18,9 @@ void tellEditor(const SceneChange& change, const SceneSession& session, SceneEdi
 
 /// Carries out what the editor asks for.
 void carryOut(SceneEditor& editor, SceneSession& session, const Settings& settings, const ViewState& view);
+
+/// Saves the simulation's state beside the scene's file, or goes on from it.
+void keepState(const Wishes& wishes, const SceneSession& session, SimulationThread& simulation);
 
 /// Shows the valid scene of a change: with its new simulation, which plays if the old one did, or by handing
 /// its parameters to the one that runs.

@@ -6,15 +6,28 @@
 #include <utility>
 
 #include "core/io/output_file.h"
+#include "core/scene/json_document.h"
 #include "core/scene/scene_edit.h"
+#include "core/scene/scene_files.h"
 
 namespace migiwa {
+
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+Files joined(Files files, const Files& more) {
+  files.insert(files.end(), more.begin(), more.end());
+  return files;
+}
+
+}  // namespace
 
 SceneSession::SceneSession(const Scene& scene, SessionOptions options)
     : file_(scene.file),
       options_(std::move(options)),
       start_(startOf(scene)),
-      watch_(filesOfScene(scene.file)) {}
+      watch_(joined(filesOfScene(scene.file), filesNamedBy(scene))) {}
 
 void SceneSession::begin(std::optional<std::string> text) {
   if (reading_.valid()) {
@@ -27,8 +40,10 @@ void SceneSession::begin(std::optional<std::string> text) {
     Reading reading;
     reading.change.fromFile = !text;
     reading.files = filesOfScene(file);
+    Files named;
     try {
-      Scene scene = text ? parseScene(*text, file, options.overrides) : readScene(file, options.overrides);
+      Scene scene =
+          parseScene(text ? *text : readTextFile(file, "a scene file"), file, options.overrides, named);
       reading.start = startOf(scene);
       if (reading.start != start)
         reading.change.simulation = std::make_unique<SimulationThread>(scene, options.threads, options.pace);
@@ -38,6 +53,7 @@ void SceneSession::begin(std::optional<std::string> text) {
     } catch (const std::exception& error) {
       reading.change.faults = {{file.string(), error.what()}};
     }
+    reading.files = joined(std::move(reading.files), named);
     return reading;
   });
 }
@@ -48,7 +64,7 @@ std::optional<SceneChange> SceneSession::poll() {
     return std::nullopt;
   Reading reading = reading_.get();
   if (reading.change.scene) start_ = reading.start;
-  if (reading.change.fromFile) watch_.follow(std::move(reading.files));
+  watch_.follow(std::move(reading.files));
   if (next_) begin(*std::exchange(next_, std::nullopt));
   return std::move(reading.change);
 }
@@ -90,6 +106,10 @@ std::string SceneSession::saveAs(const std::string& name, const std::string& tex
   watch_.setFiles(filesOfScene(file_));
   apply(written);
   return written;
+}
+
+std::filesystem::path SceneSession::stateFile() const {
+  return std::filesystem::path(file_).replace_extension(".save");
 }
 
 std::string SceneSession::fileText() const {

@@ -51,6 +51,9 @@ class SceneSession {
                      const ViewState& view);
 
   const std::filesystem::path& file() const { return file_; }
+  /// Beside the scene's file: where its state is kept.
+  std::filesystem::path stateFile() const;
+  const std::vector<Override>& overrides() const { return options_.overrides; }
   /// What the file holds; empty if it cannot be read.
   std::string fileText() const;
 

@@ -2,8 +2,9 @@
 
 #include <chrono>
 #include <fstream>
-#include <sstream>
 #include <utility>
+
+#include "core/base/checksum.h"
 
 namespace migiwa {
 
@@ -12,6 +13,15 @@ namespace {
 /// File systems keep times in steps, some in steps of two seconds.
 constexpr std::chrono::seconds kYoung{3};
 
+std::uint64_t contentOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::uint64_t sum = kEmptyChecksum;
+  std::vector<char> piece(std::size_t{1} << 16);
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+    sum = checksum(sum, piece.data(), static_cast<std::size_t>(in.gcount()));
+  return sum;
+}
+
 }  // namespace
 
 void SceneWatch::setFiles(std::vector<std::filesystem::path> files) {
@@ -19,7 +29,7 @@ void SceneWatch::setFiles(std::vector<std::filesystem::path> files) {
   for (std::filesystem::path& file : files) {
     Watched watched{std::move(file), {}, false, {}, {}};
     look(watched);
-    watched.told = watched.text;
+    watched.told = watched.content;
     files_.push_back(std::move(watched));
   }
 }
@@ -41,15 +51,11 @@ bool SceneWatch::look(Watched& watched) {
     if (error) stamp.reset();
   }
   if (stamp == watched.stamp && !watched.young) return false;
-  std::optional<std::string> text;
-  if (stamp) {
-    std::ostringstream read;
-    read << std::ifstream(watched.file, std::ios::binary).rdbuf();
-    text = std::move(read).str();
-  }
+  std::optional<std::uint64_t> content;
+  if (stamp) content = contentOf(watched.file);
   watched.stamp = stamp;
   watched.young = stamp && std::filesystem::file_time_type::clock::now() - stamp->time < kYoung;
-  return std::exchange(watched.text, std::move(text)) != watched.text;
+  return std::exchange(watched.content, content) != content;
 }
 
 bool SceneWatch::poll() {
@@ -58,8 +64,8 @@ bool SceneWatch::poll() {
   if (moving) return false;
   bool changed = false;
   for (Watched& watched : files_) {
-    changed |= watched.told != watched.text;
-    watched.told = watched.text;
+    changed |= watched.told != watched.content;
+    watched.told = watched.content;
   }
   return changed;
 }

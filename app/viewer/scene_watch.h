@@ -1,6 +1,7 @@
 // Notices that files have changed, however they were written: in place, or anew and renamed over the old one.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,13 +32,14 @@ class SceneWatch {
   };
   struct Watched {
     std::filesystem::path file;
-    std::optional<Stamp> stamp;       ///< when it was last read
-    bool young = false;               ///< then it was so new that another change may bear the same time
-    std::optional<std::string> text;  ///< what was in it; nothing: no file
-    std::optional<std::string> told;  ///< the same, when a change was last told
+    std::optional<Stamp> stamp;  ///< when it was last read
+    bool young = false;          ///< then it was so new that another change may bear the same time
+    /// Of its bytes, which may be those of a large mesh; nothing: no file.
+    std::optional<std::uint64_t> content;
+    std::optional<std::uint64_t> told;  ///< the same, when a change was last told
   };
 
-  /// Reads the file if it seems to have changed; returns whether its text did.
+  /// Reads the file if it seems to have changed; returns whether its content did.
   static bool look(Watched& watched);
 
   std::vector<Watched> files_;

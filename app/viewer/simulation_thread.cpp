@@ -3,6 +3,10 @@
 #include <exception>
 #include <utility>
 
+#include "app/ui/number_text.h"
+#include "core/base/error.h"
+#include "core/io/save_file.h"
+
 namespace migiwa {
 namespace {
 
@@ -12,6 +16,16 @@ std::string describe(const RunStatistics& statistics) {
     text = trouble.kind + " at step " + std::to_string(trouble.step) + ": " + trouble.detail;
   }
   return text;
+}
+
+std::vector<std::string> texts(const InputError& error) {
+  std::vector<std::string> result;
+  for (const Fault& fault : error.faults()) result.push_back(fault.text());
+  return result;
+}
+
+std::string noteOf(const char* done, const std::filesystem::path& file, double time) {
+  return std::string(done) + formatNumber(" at %.3f s: ", time) + file.filename().string();
 }
 
 }  // namespace
@@ -67,6 +81,19 @@ void SimulationThread::apply(const Settings& settings) {
   wake_.notify_one();
 }
 
+void SimulationThread::saveState(std::filesystem::path file, std::vector<Override> overrides) {
+  const std::lock_guard lock(mutex_);
+  save_ = {std::move(file), std::move(overrides)};
+  wake_.notify_one();
+}
+
+void SimulationThread::loadState(std::filesystem::path file) {
+  const std::lock_guard lock(mutex_);
+  load_ = std::move(file);
+  steps_ = 0;
+  wake_.notify_one();
+}
+
 bool SimulationThread::takeFrame(FrameSnapshot& frame) {
   const std::lock_guard lock(mutex_);
   if (!hasFrame_) return false;
@@ -90,7 +117,7 @@ void SimulationThread::work() {
       advance(lock);
     } catch (const std::exception& error) {
       if (!lock.owns_lock()) lock.lock();
-      status_ = {false, true, error.what()};
+      stop(error.what());
     }
   }
 }
@@ -98,7 +125,9 @@ void SimulationThread::work() {
 /// Sleeps until there is something to do and, in real time, until the next frame is due. False when it is
 /// over.
 bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
-  const auto asked = [this] { return quit_ || reset_ || settings_ || (steps_ > 0 && !status_.stopped); };
+  const auto asked = [this] {
+    return quit_ || reset_ || settings_ || save_ || load_ || (steps_ > 0 && !status_.stopped);
+  };
   while (!asked()) {
     if (!status_.playing) {
       wake_.wait(lock);
@@ -111,7 +140,20 @@ bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   return !quit_;
 }
 
+/// A simulation that stopped itself, or could not be made, waits for a reset.
+void SimulationThread::stop(std::string why) {
+  status_.playing = false;
+  status_.stopped = true;
+  status_.trouble = std::move(why);
+}
+
 void SimulationThread::carryOutWishes(std::unique_lock<std::mutex>& lock) {
+  carryOutSettings(lock);
+  if (save_) carryOutSave(lock);
+  if (load_) carryOutLoad(lock);
+}
+
+void SimulationThread::carryOutSettings(std::unique_lock<std::mutex>& lock) {
   const bool reset = std::exchange(reset_, false);
   const std::optional<Settings> settings = std::exchange(settings_, std::nullopt);
   if (!reset && !settings) return;
@@ -120,10 +162,53 @@ void SimulationThread::carryOutWishes(std::unique_lock<std::mutex>& lock) {
   if (reset) simulation_ = std::make_unique<Simulation>(scene_, threads_);
   simulation_->apply(wanted);
   lock.lock();
-  if (reset) {
-    status_.stopped = false;
-    status_.trouble.clear();
+  if (reset) begin();
+  publish(lock);
+}
+
+void SimulationThread::begin() {
+  status_.stopped = false;
+  status_.trouble.clear();
+}
+
+// A window samples nothing for the report's "settled", so what a save keeps of that is left empty here, and
+// passed over there: a run that goes on from it samples what is left of its last tenth.
+
+void SimulationThread::carryOutSave(std::unique_lock<std::mutex>& lock) {
+  const Save save = *std::exchange(save_, std::nullopt);
+  lock.unlock();
+  std::vector<std::string> faults;
+  try {
+    SettledSampler none;
+    writeSave(save.file, *simulation_, none, save.overrides);
+  } catch (const InputError& error) {
+    faults = texts(error);
   }
+  const double time = simulation_->time();
+  lock.lock();
+  status_.stateNote = faults.empty() ? noteOf("Saved", save.file, time) : "Not saved:";
+  status_.stateFaults = std::move(faults);
+}
+
+void SimulationThread::carryOutLoad(std::unique_lock<std::mutex>& lock) {
+  const std::filesystem::path file = *std::exchange(load_, std::nullopt);
+  lock.unlock();
+  std::vector<std::string> faults;
+  try {
+    SettledSampler passedOver;
+    auto loaded = std::make_unique<Simulation>(scene_, threads_);
+    loaded->apply(simulation_->settings());
+    readSave(file, *loaded, passedOver);
+    simulation_ = std::move(loaded);
+  } catch (const InputError& error) {
+    faults = texts(error);
+  }
+  const double time = simulation_->time();
+  lock.lock();
+  status_.stateNote = faults.empty() ? noteOf("Loaded", file, time) : "Not loaded, the simulation goes on:";
+  status_.stateFaults = std::move(faults);
+  if (!status_.stateFaults.empty()) return;
+  begin();
   publish(lock);
 }
 
@@ -137,7 +222,7 @@ void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
   const auto length = std::chrono::duration<double>(simulation_->settings().solver.timeStep);
   due_ = (due_ < start - length ? start : due_) + std::chrono::duration_cast<Clock::duration>(length);
   lock.lock();
-  if (stopped) status_ = {false, true, trouble};
+  if (stopped) stop(trouble);
   publish(lock);
 }
 

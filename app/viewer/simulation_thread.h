@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "app/ui/panel_model.h"
+#include "core/scene/scene_reader.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
@@ -35,6 +37,14 @@ class SimulationThread {
   /// Takes effect with the next frame.
   void apply(const Settings& settings);
 
+  // The state on disk, as `migiwa simulate --save` and `--resume` keep it (core/io/save_file.h). What became
+  // of it is in the status; faults leave the simulation as it is.
+
+  /// Writes the state between two frames. `overrides`: those that the scene was read with, for people to see.
+  void saveState(std::filesystem::path file, std::vector<Override> overrides);
+  /// Goes on from a save of this scene with the settings of now; plays on if it did.
+  void loadState(std::filesystem::path file);
+
   /// Swaps the newest frame into `frame` if there is one that was not taken yet.
   bool takeFrame(FrameSnapshot& frame);
   RunStatus status() const;
@@ -49,6 +59,12 @@ class SimulationThread {
   void work();
   bool waitForWork(std::unique_lock<std::mutex>& lock);
   void carryOutWishes(std::unique_lock<std::mutex>& lock);
+  void carryOutSettings(std::unique_lock<std::mutex>& lock);
+  void carryOutSave(std::unique_lock<std::mutex>& lock);
+  void carryOutLoad(std::unique_lock<std::mutex>& lock);
+  // With the lock held.
+  void begin();
+  void stop(std::string why);
   void advance(std::unique_lock<std::mutex>& lock);
   void publish(std::unique_lock<std::mutex>& lock);
 
@@ -68,6 +84,12 @@ class SimulationThread {
   bool hasFrame_ = false;
   RunStatus status_;
   bool reset_ = false, quit_ = false;
+  struct Save {
+    std::filesystem::path file;
+    std::vector<Override> overrides;
+  };
+  std::optional<Save> save_;
+  std::optional<std::filesystem::path> load_;
   int steps_ = 0;
   std::optional<Settings> settings_;
 

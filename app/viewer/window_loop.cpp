@@ -76,6 +76,7 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
     viewer.copyToWindow();
     window.swap();
     carryOut(wishes, viewer.settings(), *simulation);
+    keepState(wishes, session, *simulation);
     carryOut(editor, session, viewer.settings(), viewer.view());
     if (wishes.savePicture && options.savePicture) {
       if (saving.valid()) saving.get();

@@ -1,6 +1,7 @@
 // Faults of one scene while it is read: JSON pointers in, places that the user wrote out.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,10 @@ class FaultList {
   bool anyBelow(std::string_view pointer) const;
   const std::vector<Fault>& faults() const { return faults_; }
 
+  /// A file that the scene names, whether there is anything wrong with it or not.
+  void noteFile(std::filesystem::path file) { files_.push_back(std::move(file)); }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
   Origins& origins() { return origins_; }
   const Origins& origins() const { return origins_; }
 
@@ -35,6 +40,7 @@ class FaultList {
   std::vector<std::string> pointers_;
   std::vector<Fault> faults_;
   std::vector<std::string> warnings_;
+  std::vector<std::filesystem::path> files_;
 };
 
 }  // namespace migiwa

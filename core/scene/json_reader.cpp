@@ -115,6 +115,7 @@ void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc
   const Origins& origins = faults_.origins();
   const std::filesystem::path folder = origins.folder(childPointer(pointer_, key));
   value.path = folder / value.written;
+  faults_.noteFile(value.path);
   // An included scene may lie elsewhere: written again, the name has to hold from the scene itself.
   if (folder != origins.sceneFolder() && std::filesystem::path(value.written).is_relative())
     value.written = value.path.lexically_proximate(origins.sceneFolder()).generic_string();

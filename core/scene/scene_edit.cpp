@@ -6,6 +6,7 @@
 #include "core/scene/json_document.h"
 #include "core/scene/json_writer.h"
 #include "core/scene/overrides.h"
+#include "core/scene/scene_identity.h"
 #include "core/scene/scene_reader.h"
 #include "core/scene/scene_writer.h"
 
@@ -164,14 +165,10 @@ std::string sceneTextWith(std::string_view text, const std::filesystem::path& fi
 
 std::string startOf(Scene scene) {
   const Scene plain;
-  scene.name = plain.name;
-  scene.description = plain.description;
-  scene.duration = plain.duration;
   scene.boundary = plain.boundary;
   scene.effects.clear();
   scene.solver = plain.solver;
-  scene.view = plain.view;
-  return writeScene(std::move(scene));
+  return sceneIdentity(std::move(scene)).dump();
 }
 
 }  // namespace migiwa

@@ -21,7 +21,8 @@ int lineOfFault(const Fault& fault, std::string_view text, const std::filesystem
 std::string sceneTextWith(std::string_view text, const std::filesystem::path& file, const Scene& scene);
 
 /// Equal for two scenes that differ in nothing but what a running simulation can take over: settings of the
-/// solver and the walls' correction, effects, the view, and words.
+/// solver and the walls' correction, effects, the view, and words. Files that a scene names count with their
+/// content.
 std::string startOf(Scene scene);
 
 }  // namespace migiwa

@@ -7,8 +7,10 @@
 #include "core/scene/fault_list.h"
 #include "core/scene/include.h"
 #include "core/scene/json_reader.h"
+#include "core/scene/json_writer.h"
 #include "core/scene/overrides.h"
 #include "core/scene/particle_limit.h"
+#include "core/scene/scene_files.h"
 
 namespace migiwa {
 
@@ -43,17 +45,35 @@ void checkWhole(const Scene& scene, FaultList& faults) {
 
 Scene parseScene(std::string_view text, const std::filesystem::path& name,
                  const std::vector<Override>& overrides) {
+  std::vector<std::filesystem::path> named;
+  return parseScene(text, name, overrides, named);
+}
+
+Scene parseScene(std::string_view text, const std::filesystem::path& name,
+                 const std::vector<Override>& overrides, std::vector<std::filesystem::path>& named) {
+  named.clear();
   FaultList faults(name.string());
   Json root = resolveIncludes(text, name, faults);
   applyOverrides(overrides, root, faults);
   Scene scene;
   scene.file = name;
   JsonReader::read(root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
+  named = faults.files();
   checkWhole(scene, faults);
   if (!faults.empty()) throw InputError(faults.faults());
   scene.warnings = faults.warnings();
   if (scene.name.empty()) scene.name = scene.stem();
   return scene;
+}
+
+std::vector<std::filesystem::path> filesNamedBy(Scene scene) {
+  std::vector<std::filesystem::path> files;
+  JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); },
+                    [&](const FileName& name) {
+                      files.push_back(name.path);
+                      return Json(name.written);
+                    });
+  return files;
 }
 
 Scene readScene(const std::filesystem::path& file, const std::vector<Override>& overrides) {

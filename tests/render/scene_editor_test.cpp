@@ -34,7 +34,8 @@ class SceneEditorTest : public testing::Test {
 
   void frame(const InputState& input) {
     simulation_->takeFrame(frame_);
-    viewer_->frame(frame_.view(), RunStatus{}, input, kWidth, kHeight);
+    const Wishes wishes = viewer_->frame(frame_.view(), simulation_->status(), input, kWidth, kHeight);
+    keepState(wishes, session_, *simulation_);
     carryOut(editor_, session_, viewer_->settings(), viewer_->view());
   }
   void idle(int frames) {
@@ -68,6 +69,22 @@ class SceneEditorTest : public testing::Test {
     ASSERT_TRUE(editor_.open);
     idle(3);
   }
+  /// One step of the simulation, and its frame.
+  void step() {
+    const double before = frame_.info.time;
+    simulation_->step();
+    for (int k = 0; k < 30000 && frame_.info.time <= before; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      simulation_->takeFrame(frame_);
+    }
+  }
+  /// Waits until the status says so of the state's file.
+  void awaitState(const std::string& note) {
+    for (int k = 0; k < 30000 && simulation_->status().stateNote != note; ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_EQ(simulation_->status().stateNote, note);
+    idle(2);
+  }
   /// Waits for what was asked for, and takes it over as the window's loop does.
   void settle() {
     std::optional<SceneChange> change = session_.poll();  // may begin the reading, and may find it done
@@ -79,6 +96,11 @@ class SceneEditorTest : public testing::Test {
     tellEditor(*change, session_, editor_);
     if (change->scene) takeOver(*change, *viewer_, simulation_);
     idle(2);
+  }
+
+  void writePicture(const std::string& name) const {
+    fs::create_directories(MIGIWA_PICTURES);
+    writeTextFile(fs::path(MIGIWA_PICTURES) / (name + ".png"), encodePng(viewer_->picture()));
   }
 
   const fs::path folder_ = freshFolder("editor");
@@ -134,8 +156,7 @@ TEST_F(SceneEditorTest, AFaultIsMarkedListedAndFoundByAClick) {
   EXPECT_EQ(editor_.caretLine, 1);
 
   const Image picture = viewer_->picture();
-  fs::create_directories(MIGIWA_PICTURES);
-  writeTextFile(fs::path(MIGIWA_PICTURES) / "scene_editor.png", encodePng(picture));
+  writePicture("scene_editor");
   // The first entry of the list under the text: its colour is found there, and a click on it moves the caret.
   const auto alert = [&](int x, int y) {
     const auto pixel = picture.pixel(x, y);
@@ -186,6 +207,34 @@ TEST_F(SceneEditorTest, SaveAsKeepsCameraAndSettings) {
   editor_.save = true;
   idle(1);
   EXPECT_EQ(editor_.faults.size(), 1U);
+}
+
+TEST_F(SceneEditorTest, StateIsSavedAndLoadedByItsButtons) {
+  constexpr float kSave = 80, kLoad = 230, kRow = 123;
+  idle(2);
+  for (int k = 0; k < 6; ++k) step();
+  click(kSave, kRow);
+  awaitState("Saved at 0.030 s: small.save");
+  const std::uint64_t saved = frame_.info.stateHash;
+  writePicture("state_saved");
+  for (int k = 0; k < 6; ++k) step();
+  const std::uint64_t later = frame_.info.stateHash;
+  click(kLoad, kRow);
+  awaitState("Loaded at 0.030 s: small.save");
+  EXPECT_EQ(frame_.info.stateHash, saved);
+  for (int k = 0; k < 6; ++k) step();
+  EXPECT_EQ(frame_.info.stateHash, later);
+
+  // What is no save of this scene is told where the button is.
+  std::ofstream(folder_ / "small.save") << "nothing of the kind";
+  click(kLoad, kRow);
+  awaitState("Not loaded, the simulation goes on:");
+  writePicture("state_refused");
+  EXPECT_EQ(frame_.info.stateHash, later);
+  fs::remove(folder_ / "small.save");
+  fs::create_directory(folder_ / "small.save");
+  click(kSave, kRow);
+  awaitState("Not saved:");
 }
 
 TEST_F(SceneEditorTest, AFileThatBreaksLeavesAnEditedTextAlone) {

@@ -162,6 +162,49 @@ TEST_F(SceneSessionTest, IncludedFilesAreWatchedToo) {
   EXPECT_EQ(third->scene->solver.tolerance, 0.07);
 }
 
+TEST_F(SceneSessionTest, MeshesAreWatchedToo) {
+  // A tetrahedron of fluid; stretched along x, it takes twice as many particles, give or take its slanted
+  // sides.
+  const auto mesh = [](double length) {
+    return "v 0 0 0\nv " + std::to_string(length) +
+           " 0 0\nv 0 0.9 0\nv 0 0 0.9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  };
+  const auto scene = [](const std::string& file) {
+    return R"({ "format": 1, "particle_spacing": 0.05, "fluid": [ { "shape": "mesh", "file": ")" + file +
+           "\" } ] }";
+  };
+  const auto count = [](const std::optional<SceneChange>& changed) {
+    FrameSnapshot frame;
+    if (!changed || !changed->simulation || !changed->simulation->takeFrame(frame)) return std::size_t{0};
+    return frame.positions.size();
+  };
+  writeInPlace(folder_ / "fluid.obj", mesh(0.9));
+  writeInPlace(file_, scene("fluid.obj"));
+  const std::size_t before = Simulation(readScene(file_), 1).view().positions.size();
+  session_ = std::make_unique<SceneSession>(readScene(file_), SessionOptions{{}, 1, Pace::unlimited});
+  writeByRename(folder_ / "fluid.obj", mesh(1.8));
+  const std::size_t after = count(change());
+  EXPECT_NEAR(static_cast<double>(after), 2 * static_cast<double>(before), 0.1 * static_cast<double>(before));
+
+  // A mesh that breaks is told, and told to be mended, though the scene has not changed.
+  writeByRename(folder_ / "fluid.obj", "v 0 0 0\n");
+  const auto broken = change();
+  ASSERT_TRUE(broken && broken->faults.size() == 1);
+  EXPECT_EQ(broken->faults[0].place, file_.string() + ":/fluid/0/file");
+  writeByRename(folder_ / "fluid.obj", mesh(0.9));
+  EXPECT_EQ(count(change()), before);
+
+  // One that a text from the window names for the first time, and that is not there yet.
+  session_->apply(scene("later.obj"));
+  const auto missing = change();
+  ASSERT_TRUE(missing && missing->faults.size() == 1);
+  writeByRename(file_, scene("later.obj"));
+  ASSERT_TRUE(change());
+  writeInPlace(folder_ / "later.obj", mesh(1.8));
+  EXPECT_EQ(count(change()), after);
+  EXPECT_FALSE(change());
+}
+
 TEST_F(SceneSessionTest, TextsFromTheWindowAreTakenWithoutTheFile) {
   session_->apply(sceneText(0.02, 0.7));
   const auto changed = change();

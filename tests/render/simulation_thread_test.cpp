@@ -1,10 +1,12 @@
 // The simulation's thread without a window; run it under the thread sanitizer, too.
 #include "app/viewer/simulation_thread.h"
 
+#include <fstream>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "core/io/save_file.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
@@ -74,6 +76,129 @@ TEST_F(SimulationThreadTest, SettingsHoldFromTheNextFrameAndAfterAReset) {
   simulation_.reset();
   ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time == 0; }));
   EXPECT_EQ(frame_.info.handling, "no correction");
+}
+
+/// A state on disk, from one thread's simulation to another's and to that of the command line.
+class SavedStateTest : public SimulationThreadTest {
+ protected:
+  ~SavedStateTest() override { std::filesystem::remove_all(folder_); }
+
+  void stepTo(SimulationThread& simulation, double time) {
+    while (frame_.info.time < time - 1e-9) {
+      const double before = frame_.info.time;
+      simulation.step();
+      ASSERT_TRUE(waitFor(simulation, frame_, [&] { return frame_.info.time > before; }));
+    }
+  }
+  /// Waits until the status says what became of it.
+  RunStatus told(const SimulationThread& simulation) {
+    RunStatus status;
+    for (int k = 0; k < 30000 && (status = simulation.status()).stateNote.empty(); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return status;
+  }
+  /// Of a run to `time` that nobody interrupts; settings change at `changed`.
+  std::uint64_t hashAt(double time, double changed, const Settings& settings) const {
+    Simulation simulation(scene_, 1);
+    while (simulation.time() < time - 1e-9) {
+      if (std::abs(simulation.time() - changed) < 1e-9) simulation.apply(settings);
+      simulation.advanceFrame();
+    }
+    return simulation.stateHash();
+  }
+
+  const std::filesystem::path folder_ = freshFolder("state");
+  const std::filesystem::path file_ = folder_ / "small.save";
+  Settings settings_{scene_.solver, scene_.boundary, scene_.effects};
+};
+
+TEST_F(SavedStateTest, GoesOnAsIfNothingHadHappened) {
+  settings_.solver.maxIterations = 3;
+  stepTo(simulation_, 0.03);
+  simulation_.apply(settings_);
+  stepTo(simulation_, 0.05);
+  simulation_.saveState(file_, {});
+  EXPECT_EQ(told(simulation_).stateNote, "Saved at 0.050 s: small.save");
+  const std::uint64_t saved = frame_.info.stateHash;
+  stepTo(simulation_, 0.1);
+  const std::uint64_t uninterrupted = hashAt(0.1, 0.03, settings_);
+  EXPECT_EQ(frame_.info.stateHash, uninterrupted) << "saving changes nothing";
+
+  // Back, in the same window.
+  simulation_.loadState(file_);
+  ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time < 0.06; }));
+  EXPECT_EQ(frame_.info.stateHash, saved);
+  EXPECT_FALSE(simulation_.status().playing);
+  stepTo(simulation_, 0.1);
+  EXPECT_EQ(frame_.info.stateHash, uninterrupted);
+
+  // In another window, with another number of threads.
+  SimulationThread other(scene_, 1, Pace::unlimited);
+  other.apply(settings_);
+  other.loadState(file_);
+  ASSERT_TRUE(waitFor(other, frame_, [&] { return frame_.info.stateHash == saved; }));
+  stepTo(other, 0.1);
+  EXPECT_EQ(frame_.info.stateHash, uninterrupted);
+
+  // And as `migiwa simulate --resume` does.
+  Scene scene = scene_;
+  scene.solver = settings_.solver;
+  Simulation resumed(scene, 1);
+  SettledSampler sampler;
+  readSave(file_, resumed, sampler);
+  while (resumed.time() < 0.1 - 1e-9) resumed.advanceFrame();
+  EXPECT_EQ(resumed.stateHash(), uninterrupted);
+}
+
+TEST_F(SavedStateTest, WhatTheCommandLineSavedIsLoaded) {
+  Simulation before(scene_, 1);
+  for (int k = 0; k < 7; ++k) before.advanceFrame();
+  SettledSampler sampler;
+  sampler.sample(before);
+  writeSave(file_, before, sampler, {});
+  simulation_.play();
+  simulation_.loadState(file_);
+  EXPECT_EQ(told(simulation_).stateNote, "Loaded at 0.035 s: small.save");
+  EXPECT_TRUE(simulation_.status().playing) << "plays on";
+  simulation_.pause();
+  // However far it has played since.
+  ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time > 0.034; }));
+  EXPECT_EQ(frame_.info.stateHash, hashAt(frame_.info.time, -1, settings_)) << frame_.info.time;
+}
+
+TEST_F(SavedStateTest, FaultsLeaveTheSimulationAsItIs) {
+  stepTo(simulation_, 0.01);
+  simulation_.loadState(file_);
+  RunStatus status = told(simulation_);
+  ASSERT_EQ(status.stateFaults.size(), 1U);
+  EXPECT_EQ(status.stateFaults[0], file_.string() + ": expected a save, found no such file");
+  EXPECT_EQ(status.stateNote, "Not loaded, the simulation goes on:");
+
+  // A save with other settings: each that differs is named.
+  simulation_.saveState(file_, {});
+  while (!simulation_.status().stateFaults.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  settings_.solver.maxIterations = 3;
+  settings_.boundary.handling = BoundaryHandling::none;
+  simulation_.apply(settings_);
+  simulation_.loadState(file_);
+  for (int k = 0; k < 30000 && simulation_.status().stateFaults.empty(); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  status = simulation_.status();
+  ASSERT_EQ(status.stateFaults.size(), 2U);
+  EXPECT_NE(status.stateFaults[0].find("/scene/boundary/handling: expected \"none\", found \"gamma\""),
+            std::string::npos)
+      << status.stateFaults[0];
+  EXPECT_NE(status.stateFaults[1].find("/scene/solver/max_iterations: expected 3, found 4"),
+            std::string::npos)
+      << status.stateFaults[1];
+  stepTo(simulation_, 0.02);
+  EXPECT_EQ(frame_.info.stateHash, hashAt(0.02, 0.01, settings_));
+
+  // A folder that is not there.
+  simulation_.saveState(folder_ / "none" / "small.save", {});
+  while (simulation_.status().stateNote != "Not saved:")
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(simulation_.status().stateFaults.size(), 1U);
 }
 
 TEST_F(SimulationThreadTest, WishesFromAnotherThreadWhileItPlays) {
