@@ -54,7 +54,8 @@ std::string slimFitKey(const SlimSource& source) {
   std::string key;
   if (source.kind == SlimSource::Kind::bowl) {
     const Bowl& bowl = source.bowl;
-    add(key, "bowl", {bowl.center.x(), bowl.center.y(), bowl.center.z(), bowl.radius, bowl.thickness});
+    add(key, "bowl",
+        {bowl.center.x(), bowl.center.y(), bowl.center.z(), bowl.radius, bowl.thickness, bowl.height});
   } else {
     const std::optional<std::string> content = contentOf(source.file);
     if (!content) return {};

@@ -106,10 +106,8 @@ const SlimMesh& SlimWallData::drawnMesh() const {
 }
 
 bool SlimSource::operator==(const SlimSource& other) const {
-  return kind == other.kind && file == other.file && bowl.center == other.bowl.center &&
-         bowl.radius == other.bowl.radius && bowl.thickness == other.bowl.thickness &&
-         degree == other.degree && tolerance == other.tolerance && nodes == other.nodes &&
-         transform == other.transform;
+  return kind == other.kind && file == other.file && bowl == other.bowl && degree == other.degree &&
+         tolerance == other.tolerance && nodes == other.nodes && transform == other.transform;
 }
 
 std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {

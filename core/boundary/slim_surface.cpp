@@ -71,14 +71,18 @@ void SlimSurface::describe(FieldVisitor& visitor) {
                {"", "Instead: a mesh or points with normals to fit, relative to the scene file."});
   bool bowl = source_.kind == SlimSource::Kind::bowl;
   visitor.object(
-      "bowl", {"", "Instead: a bowl by formula, the lower half of a sphere with a rounded rim."},
+      "bowl",
+      {"",
+       "Instead: a bowl by formula, the lower half of a sphere with a rounded rim, or a "
+       "glass."},
       [this](FieldVisitor& fields) {
-        fields.vector("center", source_.bowl.center,
-                      {"m", "Centre of the sphere, level with the rim.", Presence::required});
+        fields.vector("center", source_.bowl.center, {"m", "Centre of the sphere.", Presence::required});
         fields.number("radius", source_.bowl.radius, Range::positive(kLargestCoordinate),
                       {"m", "Of the sphere midway in the wall.", Presence::required});
         fields.number("thickness", source_.bowl.thickness, Range::positive(kLargestCoordinate),
                       {"m", "Of the wall.", Presence::required});
+        fields.number("height", source_.bowl.height, Range::closed(0, kLargestCoordinate),
+                      {"m", "Of the rim above the centre: 0 is a bowl, more a glass with a round bottom."});
         if (fields.sound({"radius", "thickness"}) && source_.bowl.thickness >= source_.bowl.radius)
           fields.fault("thickness", "expected less than the radius, found more");
       },

@@ -86,13 +86,15 @@ TEST_F(SlimCache, IsReadAtTheNextStart) {
 TEST_F(SlimCache, TheKeyTellsAllThatMatters) {
   const std::string key = slimFitKey(source_);
   EXPECT_EQ(slimFitKey(source_), key);
-  std::vector<SlimSource> others(6, source_);
+  std::vector<SlimSource> others(7, source_);
   others[0].degree = 2;
   others[1].nodes = 101;
   others[2].tolerance = 0.01;
   others[3].transform.translate.y() = 1e-9;
   others[4].transform.scale = 2;
-  others[5].kind = SlimSource::Kind::bowl;
+  others[5].kind = others[6].kind = SlimSource::Kind::bowl;
+  others[6].bowl.height = 1;
+  EXPECT_NE(slimFitKey(others[5]), slimFitKey(others[6]));
   for (const SlimSource& other : others) EXPECT_NE(slimFitKey(other), key);
   write(source_.file, std::string(kCube) + "# one more line\n");
   EXPECT_NE(slimFitKey(source_), key);

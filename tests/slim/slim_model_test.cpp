@@ -1,6 +1,8 @@
 // Distances, normals and gradients of SLIM surfaces against exact shapes, near and far.
 #include "core/slim/slim_model.h"
 
+#include <algorithm>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -68,6 +70,29 @@ TEST(SlimModel, DistanceAndNormalOfASphereAndABowl) {
     expectNear(
         *model, [&](const Vec3d& p, Vec3d& n) { return bowlDistance(bowl, p, n); }, bowlPoints(bowl, 3001),
         offset, 0.0015, 0.09);
+}
+
+TEST(SlimModel, DistanceAndNormalOfAGlass) {
+  Bowl glass;
+  glass.height = 1.5;
+  const OrientedPoints points = bowlPoints(glass, 3001);
+  // Even: as many on the cylinder, inside and outside, as its part of the area.
+  const double cylinder = 2 * 2 * std::numbers::pi * 1.5,
+               ends = 2 * std::numbers::pi * (0.81 + 1.21) + 2 * std::numbers::pi * std::numbers::pi * 0.1;
+  const auto onCylinder = std::count_if(
+      points.points.begin(), points.points.end(),
+      [](const OrientedPoint& point) { return point.position.y() > 0 && point.position.y() < 1.5F; });
+  EXPECT_NEAR(static_cast<double>(onCylinder) / 3001, cylinder / (cylinder + ends), 0.002);
+  for (const OrientedPoint& point : points.points) {
+    Vec3d normal;
+    EXPECT_NEAR(bowlDistance(glass, point.position.cast<double>(), normal), 0, 1e-6);
+    EXPECT_GT(normal.dot(point.normal.cast<double>()), 0.999999);
+  }
+  const auto model = fitted(bowlPoints(glass, 150000), 2, 0.001);
+  for (const double offset : {-0.04, 0.0, 0.04})
+    expectNear(
+        *model, [&](const Vec3d& p, Vec3d& n) { return bowlDistance(glass, p, n); }, points, offset, 0.0015,
+        0.09);
 }
 
 TEST(SlimModel, InsideAndOutsideAreKnownFarFromTheSurface) {
