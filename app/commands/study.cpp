@@ -8,6 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/progress_bar.h"
+#include "app/commands/study_convergence.h"
 #include "app/commands/study_job.h"
 #include "app/commands/study_plot.h"
 #include "app/commands/study_summary.h"
@@ -158,12 +159,13 @@ class Study {
     for (std::size_t run = 1; run <= records_.size(); ++run)
       runs.push_back({run, job_.plan.values(run), *records_[run - 1]});
     writeTextFile(job_.folder / "study.csv", studyCsv(job_.plan, runs));
-    const std::string summary = studySummary(job_.plan, runs);
+    const std::string summary = studySummary(job_.plan, runs) + convergenceSummary(job_.plan, runs);
     writeTextFile(job_.folder / "summary.md", summary);
     const std::vector<AccuracyMeasure>& measures = accuracyMeasures();
     plotStudy(job_.folder / "cost_accuracy.png", job_.plan, runs, measures.front());
     for (std::size_t k = 1; k < measures.size(); ++k)
       plotStudy(job_.folder / (measures[k].column + ".png"), job_.plan, runs, measures[k]);
+    plotConvergence(job_.folder, job_.plan, runs);
     std::cout << summary << "\nWritten to " << job_.folder.string()
               << ": study.csv, summary.md, cost_accuracy.png and a picture for each measure\n";
     int code = kDone;

@@ -8,14 +8,12 @@
 #include <sstream>
 
 #include "app/commands/gnuplot.h"
+#include "app/commands/study_drawing.h"
+#include "core/study/convergence.h"
 
 namespace migiwa {
 
 namespace {
-
-// Okabe and Ito's colours that stand out from white, then darker ones.
-constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#8a6d00", "#56b4e9", "#5b3f8c", "#777777"};
 
 struct Point {
   double cost, least, most, error;  ///< least and most: about the middle half of whole repetitions
@@ -26,29 +24,6 @@ struct Line {
   std::string label;
   std::vector<Point> points;
 };
-
-/// Logarithmic axis that leaves room around what it shows.
-struct LogAxis {
-  double low, high;
-  LogAxis(double least, double most, double below, double above) {
-    const double decades = std::max(std::log10(most / least), 0.3);
-    low = least * std::pow(10, -below * decades);
-    high = most * std::pow(10, above * decades);
-  }
-  double part(double value) const { return std::log(value / low) / std::log(high / low); }
-};
-
-/// Text between single quotes of gnuplot.
-std::string quoted(std::string text) {
-  for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 2) text.insert(at, "'");
-  return "'" + text + "'";
-}
-
-bool isNumber(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0';
-}
 
 std::string noteOf(const StudyPlan& plan, const FinishedRun& run, std::size_t from) {
   std::string note;
@@ -72,8 +47,7 @@ double repetitionTime(const RunRecord& record, double part) {
 std::vector<Line> linesOf(const StudyPlan& plan, const std::vector<FinishedRun>& runs,
                           const AccuracyMeasure& measure) {
   const StudyAxis& first = plan.axes.front();
-  const bool single =
-      plan.axes.size() == 1 && std::all_of(first.values.begin(), first.values.end(), isNumber);
+  const bool single = plan.axes.size() == 1 && isNumeric(first);
   std::vector<Line> lines(single ? 1 : first.values.size());
   for (std::size_t k = 0; k < lines.size(); ++k)
     lines[k].label = single ? shortName(first.pointer) : first.label(first.values[k]);
@@ -101,7 +75,7 @@ std::string labels(const std::vector<Line>& lines, const LogAxis& x, const LogAx
     if (lines[k].points.empty()) continue;
     const Point& dearest = *std::max_element(lines[k].points.begin(), lines[k].points.end(),
                                              [](const Point& a, const Point& b) { return a.most < b.most; });
-    all.push_back({x.part(dearest.most), y.part(dearest.error), lines[k].label, k % kColors.size()});
+    all.push_back({x.part(dearest.most), y.part(dearest.error), lines[k].label, k});
   }
   std::sort(all.begin(), all.end(), [](const Label& a, const Label& b) { return a.up < b.up; });
   std::ostringstream out;
@@ -109,8 +83,9 @@ std::string labels(const std::vector<Line>& lines, const LogAxis& x, const LogAx
     for (std::size_t below = 0; below < k; ++below)
       if (std::abs(all[k].across - all[below].across) < 0.15)
         all[k].up = std::max(all[k].up, all[below].up + 0.04);
-    out << "set label " << quoted(all[k].text) << " at graph " << all[k].across + 0.012 << ',' << all[k].up
-        << " left font 'DejaVu Sans Bold,13' textcolor rgb '" << kColors.at(all[k].color) << "' front\n";
+    out << "set label " << quotedForGnuplot(all[k].text) << " at graph " << all[k].across + 0.012 << ','
+        << all[k].up << " left font 'DejaVu Sans Bold,13' textcolor rgb '" << lineColor(all[k].color)
+        << "' front\n";
   }
   return out.str();
 }
@@ -162,33 +137,14 @@ bool plotStudy(const std::filesystem::path& png, const StudyPlan& plan, const st
   script << "set title \"" << titleText << "\" font 'DejaVu Sans,15'\n"
          << "set logscale xy\nset xrange [" << x.low << ':' << x.high << "]\nset yrange [" << y.low << ':'
          << y.high << "]\nset xlabel 'wall time a simulated second (ms)'\nset ylabel "
-         << quoted(measure.title + (measure.unit.empty() ? "" : " (" + measure.unit + ")"))
+         << quotedForGnuplot(measure.title + (measure.unit.empty() ? "" : " (" + measure.unit + ")"))
          << "\nset format x '%.6g'\nset format y '%.3g'\n"
          << "set xtics add auto\nset mxtics 10\nset grid xtics ytics mxtics mytics linecolor rgb '#d8d8d8', "
             "linecolor rgb '#ececec'\nset key bottom left box linecolor rgb '#bbbbbb' opaque\n";
-  // A range within one or two decades has hardly a tick of its own on a logarithmic axis.
-  const auto ticks = [&](const char* axis, const LogAxis& range) {
-    const double span = range.high / range.low;
-    if (span > 200) return;
-    script << "set " << axis << "tics (";
-    bool any = false;
-    for (int decade = static_cast<int>(std::floor(std::log10(range.low))); decade <= std::log10(range.high);
-         ++decade)
-      for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0}) {
-        const double at = digit * std::pow(10, decade);
-        if (at < range.low || at > range.high) continue;
-        if (span > 20 && digit != 1 && digit != 2 && digit != 5) continue;
-        script << (any ? ", " : "") << at;
-        any = true;
-      }
-    script << ")\n";
-  };
-  ticks("x", x);
-  ticks("y", y);
-  script << labels(lines, x, y) << "plot ";
+  script << logTicks("x", x) << logTicks("y", y) << labels(lines, x, y) << "plot ";
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (lines[k].points.empty()) continue;
-    const std::string data = "$line" + std::to_string(k), color = kColors.at(k % kColors.size());
+    const std::string data = "$line" + std::to_string(k), color = lineColor(k);
     script << data << " using 1:2 with lines linewidth 2 linecolor rgb '" << color << "' notitle, " << data
            << " using 1:2:3:4 with xerrorbars pointtype 7 pointsize 1.1 linewidth 1 linecolor rgb '" << color
            << "' notitle, " << data

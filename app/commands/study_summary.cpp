@@ -61,13 +61,19 @@ void describeFront(std::ostream& out, const StudyPlan& plan, const std::vector<F
   } else {
     out << " No run is cheaper.";
   }
-  out << "\n\n| on the front | ms a simulated second | " << measure.title << " |\n|---|---|---|\n";
+  out << "\n\n| on the front | ms a simulated second | " << tableCell(measure.title) << " |\n|---|---|---|\n";
   for (const std::size_t at : front)
     out << "| run " << runs[at].run << ": " << nameOf(plan, runs[at]) << " | " << digits(cost(at), "%.0f")
         << " | " << digits(error(at)) << unit << " |\n";
 }
 
 }  // namespace
+
+std::string tableCell(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);
+  return result;
+}
 
 std::string studySummary(const StudyPlan& plan, const std::vector<FinishedRun>& runs) {
   std::ostringstream out;

@@ -9,6 +9,9 @@
 
 namespace migiwa {
 
+/// Text for a cell of a Markdown table, where bars end a cell.
+std::string tableCell(const std::string& text);
+
 /// Which runs are on the front of each measure, what the best accuracy costs, and how far times scatter.
 std::string studySummary(const StudyPlan& plan, const std::vector<FinishedRun>& runs);
 

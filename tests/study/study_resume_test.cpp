@@ -46,6 +46,10 @@ TEST_F(StudyOfForty, StoppedTwiceAndMergedFromFourPartsHasTheSameTable) {
   const std::string whole = table("whole");
   ASSERT_EQ(std::count(whole.begin(), whole.end(), '\n'), kRuns + 1);
 
+  EXPECT_TRUE(fs::exists(folder_ / "whole" / "over_max_iterations.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "whole" / "over_time_step.png")) << "two values show no order";
+  EXPECT_NE(readAll(folder_ / "whole" / "summary.md").find("## Orders in max_iterations"), std::string::npos);
+
   stopWhenThere(study("stopped"), "stopped/runs/7.json", SIGINT);
   const std::string kept = readAll(folder_ / "stopped" / "runs" / "7.json");
   stopWhenThere(study("stopped"), "stopped/runs/23.json", SIGKILL);
