@@ -13,6 +13,8 @@
 namespace migiwa {
 
 struct SceneEditor;
+struct WhatIfModel;
+class StageHistory;
 
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
@@ -52,6 +54,8 @@ struct PanelModel {
   bool hasNodes;  ///< some wall has nodes to show
   Wishes& wishes;
   SceneEditor* editor;  ///< null: the scene's text is not offered
+  WhatIfModel* whatIf;  ///< null: not offered
+  const StageHistory& history;
 };
 
 }  // namespace migiwa

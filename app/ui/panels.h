@@ -13,6 +13,8 @@ void solverPanel(PanelModel& model);
 /// Of one effect among the settings'.
 void effectPanel(PanelModel& model, NamedEffect& effect);
 void viewPanel(PanelModel& model);
+/// Needs the model's whatIf.
+void whatIfPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
 
 }  // namespace migiwa

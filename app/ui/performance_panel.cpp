@@ -5,6 +5,7 @@
 #include "app/ui/number_text.h"
 #include "app/ui/panels.h"
 #include "app/ui/stage_bar.h"
+#include "app/ui/stage_history.h"
 #include "app/ui/widgets.h"
 
 namespace migiwa {
@@ -13,6 +14,10 @@ void performancePanel(PanelModel& model) {
   rowLabel("ms per step");
   ImGui::TextUnformatted(milliseconds(model.frame.stepSeconds, model.timings).c_str());
   stageBar(model.frame.stages, model.timings);
+  if (model.timings) {
+    faintText("ms a frame, by stage, over the last frames");
+    stageChart(model.history, std::floor(4 * ImGui::GetFontSize()));
+  }
   faintText("Mean density error by iteration");
   // What is left of the column, within reason.
   const float line = ImGui::GetFontSize();

@@ -19,10 +19,6 @@ constexpr std::array<ImU32, 12> kStageColors{
     IM_COL32(224, 142, 190, 255), IM_COL32(150, 164, 178, 255), IM_COL32(120, 210, 220, 255),
     IM_COL32(196, 140, 100, 255), IM_COL32(170, 200, 110, 255), IM_COL32(120, 130, 230, 255)};
 
-ImU32 stageColor(std::size_t i) {
-  return kStageColors[i % kStageColors.size()];
-}
-
 std::string shownName(const std::string& stage) {
   std::string name = stage;
   for (char& c : name)
@@ -31,6 +27,10 @@ std::string shownName(const std::string& stage) {
 }
 
 }  // namespace
+
+ImU32 stageColor(std::size_t i) {
+  return kStageColors[i % kStageColors.size()];
+}
 
 void stageBar(const StageTimes& times, bool timings) {
   const std::vector<StageTime>& stages = times.stages();

@@ -127,6 +127,7 @@ void Ui::panels(PanelModel& model, int height) {
   }
   section("View", lines > 33, bold, model, viewPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
+  if (model.whatIf != nullptr) section("What if", lines > 60, bold, model, whatIfPanel);
   ImGui::End();
 }
 

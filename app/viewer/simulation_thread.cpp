@@ -94,6 +94,13 @@ void SimulationThread::loadState(std::filesystem::path file) {
   wake_.notify_one();
 }
 
+std::future<StateImage> SimulationThread::capture() {
+  const std::lock_guard lock(mutex_);
+  std::future<StateImage> image = captures_.emplace_back().get_future();
+  wake_.notify_one();
+  return image;
+}
+
 bool SimulationThread::takeFrame(FrameSnapshot& frame) {
   const std::lock_guard lock(mutex_);
   if (!hasFrame_) return false;
@@ -126,7 +133,8 @@ void SimulationThread::work() {
 /// over.
 bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   const auto asked = [this] {
-    return quit_ || reset_ || settings_ || save_ || load_ || (steps_ > 0 && !status_.stopped);
+    return quit_ || reset_ || settings_ || save_ || load_ || !captures_.empty() ||
+           (steps_ > 0 && !status_.stopped);
   };
   while (!asked()) {
     if (!status_.playing) {
@@ -151,6 +159,11 @@ void SimulationThread::carryOutWishes(std::unique_lock<std::mutex>& lock) {
   carryOutSettings(lock);
   if (save_) carryOutSave(lock);
   if (load_) carryOutLoad(lock);
+  if (captures_.empty()) return;
+  std::vector<std::promise<StateImage>> captures = std::exchange(captures_, {});
+  lock.unlock();
+  for (std::promise<StateImage>& capture : captures) capture.set_value(StateImage::of(*simulation_));
+  lock.lock();
 }
 
 void SimulationThread::carryOutSettings(std::unique_lock<std::mutex>& lock) {

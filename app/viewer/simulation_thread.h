@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "app/ui/panel_model.h"
 #include "core/scene/scene_reader.h"
 #include "core/simulation/simulation.h"
+#include "core/simulation/state_image.h"
 
 namespace migiwa {
 
@@ -44,6 +46,10 @@ class SimulationThread {
   void saveState(std::filesystem::path file, std::vector<Override> overrides);
   /// Goes on from a save of this scene with the settings of now; plays on if it did.
   void loadState(std::filesystem::path file);
+
+  /// The state between two frames, to go on from elsewhere. Whoever waits for it waits for the frame that is
+  /// being computed, at most; std::future_error where the simulation ends first.
+  std::future<StateImage> capture();
 
   /// Swaps the newest frame into `frame` if there is one that was not taken yet.
   bool takeFrame(FrameSnapshot& frame);
@@ -90,6 +96,7 @@ class SimulationThread {
   };
   std::optional<Save> save_;
   std::optional<std::filesystem::path> load_;
+  std::vector<std::promise<StateImage>> captures_;
   int steps_ = 0;
   std::optional<Settings> settings_;
 

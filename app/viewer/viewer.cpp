@@ -104,6 +104,7 @@ Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width
 
 Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {
   Wishes wishes;
+  history_.add(frame.info.steps, frame.info.stages);
   ui_.caption(caption(frame, run), area);
   ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
   const NodePass& nodes = renderer_.nodes();
@@ -113,8 +114,8 @@ Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& 
     ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
   }
   if (view_.panels) {
-    PanelModel model{frame.info, run,   options_.timings, scene_, bounds_,
-                     settings_,  view_, !nodes.empty(),   wishes, options_.editor};
+    PanelModel model{frame.info,     run,    options_.timings, scene_,          bounds_, settings_, view_,
+                     !nodes.empty(), wishes, options_.editor,  options_.whatIf, history_};
     ui_.panels(model, area.height);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }

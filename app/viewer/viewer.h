@@ -9,6 +9,7 @@
 #include "app/platform/input_state.h"
 #include "app/render/image.h"
 #include "app/render/renderer.h"
+#include "app/ui/stage_history.h"
 #include "app/ui/ui.h"
 
 namespace migiwa {
@@ -21,6 +22,8 @@ struct ViewerOptions {
   ColorMap colors = makeColorMap();
   /// The scene's text, to be edited in the window; null: not offered. Outlives the viewer.
   SceneEditor* editor = nullptr;
+  /// Settings to be tried on a copy; null: not offered. Outlives the viewer.
+  WhatIfModel* whatIf = nullptr;
 };
 
 /// The scale that suits a picture of this size.
@@ -64,6 +67,7 @@ class Viewer {
   ViewState view_;
   Renderer renderer_;
   Ui ui_;
+  StageHistory history_;
   std::optional<RenderTarget> target_;
   InputState last_;
   bool laidOut_ = false;

@@ -9,6 +9,7 @@
 #include "app/viewer/editing.h"
 #include "app/viewer/simulation_thread.h"
 #include "app/viewer/viewer.h"
+#include "app/viewer/what_if_session.h"
 
 namespace migiwa {
 namespace {
@@ -45,8 +46,10 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
   auto simulation = std::make_unique<SimulationThread>(scene, options.threads, Pace::realTime);
   printWarnings(simulation->scene());
   SceneEditor editor = makeEditor(session);
+  WhatIfModel whatIf;
+  WhatIfSession trials(options.threads);
   Viewer viewer(simulation->scene(), simulation->walls(),
-                {.scale = window.contentScale(), .editor = &editor});
+                {.scale = window.contentScale(), .editor = &editor, .whatIf = &whatIf});
   if (options.playing) simulation->play();
 
   FrameSnapshot frame;
@@ -62,11 +65,13 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
       looked = Clock::now();
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
+        if (change->scene) trials.forget(whatIf);
         if (change->scene) takeOver(*change, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
       }
     }
+    if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
     if (simulation->takeFrame(frame)) redraws = std::max(redraws, 1);
     const auto [width, height] = window.framebufferSize();
     last = Clock::now();

@@ -1,0 +1,76 @@
+#include "app/ui/what_if_panel.h"
+
+#include <cmath>
+
+#include "app/ui/cost_chart.h"
+#include "app/ui/number_text.h"
+#include "app/ui/panels.h"
+#include "app/ui/widgets.h"
+#include "core/boundary/handling.h"
+
+namespace migiwa {
+namespace {
+
+constexpr ImGuiSliderFlags kLog = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic;
+
+bool form(Settings& asked) {
+  bool changed = false;
+  BoundaryParameters& boundary = asked.boundary;
+  rowLabel("Walls");
+  auto handling = static_cast<int>(boundary.handling);
+  if (choice("##what_if_handling", handling, handlingNames())) {
+    boundary.handling = static_cast<BoundaryHandling>(handling);
+    changed = true;
+  }
+  ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
+  rowLabel("Method of γ");
+  changed |= choice("##what_if_method", boundary.gammaMethod, gammaMethodNames());
+  ImGui::EndDisabled();
+  rowLabel("Max iterations");
+  if (ImGui::SliderInt("##what_if_max", &asked.solver.maxIterations, 1, 100, "%d", kLog)) {
+    asked.solver.minIterations = std::min(asked.solver.minIterations, asked.solver.maxIterations);
+    changed = true;
+  }
+  rowLabel("Tolerance");
+  const double low = 0.0005, high = 0.2;
+  changed |= ImGui::SliderScalar("##what_if_tolerance", ImGuiDataType_Double, &asked.solver.tolerance, &low,
+                                 &high, "%.4f", kLog);
+  return changed;
+}
+
+std::string percent(const std::optional<double>& share) {
+  return share ? formatNumber("%.2f %%", 100 * *share) : "-";
+}
+
+}  // namespace
+
+void whatIfPanel(PanelModel& model) {
+  WhatIfModel& whatIf = *model.whatIf;
+  if (whatIf.follows) whatIf.asked = model.settings;
+  if (form(whatIf.asked)) whatIf.follows = false;
+
+  const float width = buttonWidth(2);
+  ImGui::BeginDisabled(whatIf.busy);
+  if (ImGui::Button(whatIf.points.empty() ? "Measure" : "Try", {width, 0})) whatIf.ask = true;
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::BeginDisabled(whatIf.points.empty());
+  if (ImGui::Button("Clear", {width, 0})) whatIf.clear = true;
+  ImGui::EndDisabled();
+  faintText(!whatIf.note.empty() ? whatIf.note : "The state of now, five frames on, on a copy");
+  if (whatIf.points.empty()) return;
+
+  costChart(whatIf.points, std::floor(11 * ImGui::GetFontSize()));
+  for (std::size_t k = 0; k < whatIf.points.size(); ++k) {
+    const WhatIfPoint& point = whatIf.points[k];
+    ImGui::TextWrapped("%zu  %s", k + 1, point.label.c_str());
+    if (!point.trouble.empty()) {
+      faintText("    stopped: " + point.trouble);
+      continue;
+    }
+    faintText("    " + formatNumber("%.1f iterations", point.iterations) + ", ρ off by " +
+              percent(point.densityError) + ", γ by " + percent(point.gammaError));
+  }
+}
+
+}  // namespace migiwa
