@@ -216,9 +216,9 @@ TEST(Particles, AThinPlateHasThemMidway) {
 }
 
 /// What a plane of boundary particles adds to the density at a height above it (m).
-double planeDensity(std::vector<Vec3f> places, float height) {
+double planeDensity(const std::vector<Vec3f>& places, float height) {
   ThreadPool pool(1);
-  const BoundaryParticles particles(std::move(places), KernelType::poly6, kSupport, pool);
+  const BoundaryParticles particles(places, KernelType::poly6, kSupport, pool);
   double least = 1e9, most = 0;
   for (const Vec3f& p :
        {Vec3f(0, height, 0), Vec3f(0.013F, height, 0.007F), Vec3f(-0.021F, height, 0.024F)}) {

@@ -140,8 +140,8 @@ std::vector<Vec3f> sampleWalls(const Boundary& boundary, const Bounds& region, f
   const Candidates candidates(boundary, spacing, depth);
   pool.run(slabs, [&](std::size_t slab) {
     for (std::size_t k = 0; k < across * up; ++k) {
-      const Vec3d index(static_cast<double>(k % across), static_cast<double>(k / across),
-                        static_cast<double>(slab));
+      const std::size_t x = k % across, y = k / across;
+      const Vec3d index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(slab));
       candidates.collect((grown.min + edge * index).cast<float>(), layers[slab], thins[slab]);
     }
   });
@@ -161,7 +161,7 @@ std::vector<Vec3f> sampleWalls(const Boundary& boundary, const Bounds& region, f
   return points.take();
 }
 
-BoundaryParticles::BoundaryParticles(std::vector<Vec3f> places, KernelType kernel, float supportRadius,
+BoundaryParticles::BoundaryParticles(const std::vector<Vec3f>& places, KernelType kernel, float supportRadius,
                                      ThreadPool& pool)
     : inverseSupport_(1 / supportRadius) {
   std::vector<Float4> unsorted;
@@ -171,10 +171,11 @@ BoundaryParticles::BoundaryParticles(std::vector<Vec3f> places, KernelType kerne
   for (const std::uint32_t k : grid_.order()) particles_.push_back(unsorted[k]);
   std::vector<float> volumes(particles_.size());
   withKernel(kernel, [&](auto type) {
+    using Kernel = decltype(type);
     parallelFor(pool, particles_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t b = begin; b < end; ++b) {
         float sum = 0;
-        around(particles_[b].xyz(), [&](const Vec3f&, float q, float) { sum += decltype(type)::value(q); });
+        around(particles_[b].xyz(), [&](const Vec3f&, float q, float) { sum += Kernel::value(q); });
         volumes[b] = 1 / sum;
       }
     });

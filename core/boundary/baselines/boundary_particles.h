@@ -25,7 +25,8 @@ class BoundaryParticles {
  public:
   /// Akinci Eqs. 4 and 5: Psi_b / rho0 = V_b = 1 / sum_k W_bk over all boundary particles k in reach, b
   /// itself included.
-  BoundaryParticles(std::vector<Vec3f> places, KernelType kernel, float supportRadius, ThreadPool& pool);
+  BoundaryParticles(const std::vector<Vec3f>& places, KernelType kernel, float supportRadius,
+                    ThreadPool& pool);
 
   /// xyz: place (m); w: volume over the support radius cubed.
   std::span<const Float4> particles() const { return particles_; }

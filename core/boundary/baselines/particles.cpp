@@ -36,8 +36,8 @@ float restingDepth(double spacing, double support) {
   const auto added = [&](double height) {
     constexpr int kPlaces = 4;
     double sum = 0;
-    for (int k = 0; k < kPlaces * kPlaces; ++k)
-      sum += layer(height, (k % kPlaces) / double{kPlaces}, (k / kPlaces) / double{kPlaces});
+    for (int z = 0; z < kPlaces; ++z)
+      for (int x = 0; x < kPlaces; ++x) sum += layer(height, x / double{kPlaces}, z / double{kPlaces});
     return sum / (kPlaces * kPlaces * layer(0, 0, 0));
   };
   double near = 0.5, far = ratio;
