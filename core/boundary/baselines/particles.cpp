@@ -7,6 +7,7 @@
 // behind it as lets a lattice that rests on a flat wall read the density at rest: the depth at which the
 // method does best. Walls have no friction of their own.
 #include <cmath>
+#include <optional>
 
 #include "core/boundary/baselines/baselines.h"
 #include "core/boundary/baselines/boundary_particles.h"
@@ -123,8 +124,8 @@ class ParticleWalls final : public GammaMethod {
     // A wall without end has particles as far around the scene as the scene is wide.
     if (endless) region.include(context.region.grown(context.region.size().norm()));
     const Boundary boundary = Boundary::atRest(std::move(surfaces));
-    std::unique_ptr<ThreadPool> own = context.pool == nullptr ? std::make_unique<ThreadPool>(1) : nullptr;
-    ThreadPool& pool = own != nullptr ? *own : *context.pool;
+    std::optional<ThreadPool> own;
+    ThreadPool& pool = context.pool != nullptr ? *context.pool : own.emplace(1);
     bodies_.push_back({mover,
                        {sampleWalls(boundary, region, context.spacing,
                                     restingDepth<Kernel>(static_cast<double>(context.spacing),
