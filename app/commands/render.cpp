@@ -48,7 +48,7 @@ class Drawing {
           progress.update(simulation.time());
         }
         if (simulation.frame() < frame) break;
-        const FrameView view = simulation.view();
+        const FrameView view = simulation.drawnView();
         keep(i, viewer.takePicture(view, RunStatus{}, job_.width, job_.height),
              pictureRecord(view, variant.overrides));
       }

@@ -128,8 +128,8 @@ void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget
   glEnable(GL_MULTISAMPLE);
   glDisable(GL_CULL_FACE);
 
-  if (frame.info.walls && frame.info.walls != movedWalls_) {
-    movedWalls_ = frame.info.walls;
+  if (frame.walls && frame.walls != movedWalls_) {
+    movedWalls_ = frame.walls;
     setWalls(*movedWalls_);
   }
   collectSpheres(frame, shot);

@@ -36,7 +36,7 @@ SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
       simulation_(std::make_unique<Simulation>(scene, threads)),
       scene_(simulation_->scene()),
       walls_(simulation_->walls()) {
-  finished_.assign(simulation_->view());
+  finished_.assign(simulation_->drawnView());
   hasFrame_ = true;
   thread_ = std::thread([this] { work(); });
 }
@@ -241,7 +241,7 @@ void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
 
 void SimulationThread::publish(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
-  filling_.assign(simulation_->view());
+  filling_.assign(simulation_->drawnView());
   lock.lock();
   std::swap(filling_, finished_);
   hasFrame_ = true;

@@ -12,6 +12,7 @@ void FrameSnapshot::assign(const FrameView& view) {
   gamma.assign(view.gamma.begin(), view.gamma.end());
   lambda.assign(view.lambda.begin(), view.lambda.end());
   neighbours.assign(view.neighbours.begin(), view.neighbours.end());
+  walls = view.walls;
 }
 
 ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed) {

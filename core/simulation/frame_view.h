@@ -21,14 +21,12 @@ struct FrameInfo {
   long steps = 0;           ///< substeps so far
   float spacing = 0;        ///< particle spacing (m)
   float supportRadius = 0;  ///< (m)
-  std::string handling;     ///< how walls are handled, such as "gamma: product", "particles" or "no correction"
-  int iterations = 0;       ///< of the last step
+  std::string handling;  ///< how walls are handled, such as "gamma: product", "particles" or "no correction"
+  int iterations = 0;    ///< of the last step
   std::vector<IterationError> errors;  ///< of the last step: before the first iteration, then after each
   StageTimes stages;                   ///< of the last frame (s)
   double stepSeconds = 0;              ///< wall time of the last frame's mean substep
   std::uint64_t stateHash = 0;
-  /// Where some walls move: all of them as they are now. Null where all stand still.
-  std::shared_ptr<const WallDrawing> walls;
 };
 
 struct FrameView {
@@ -40,6 +38,9 @@ struct FrameView {
   std::span<const float> lambda;  ///< of the last iteration, times the squared support radius (1)
   std::span<const std::uint32_t> neighbours;
   std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame; empty in a snapshot
+  /// For pictures of walls that move: all walls as they are now. Null where all stand still, and where
+  /// nobody draws.
+  std::shared_ptr<const WallDrawing> walls{};
 };
 
 /// A copy of a frame view that owns its data.
@@ -48,9 +49,12 @@ struct FrameSnapshot {
   std::vector<Float4> positions, velocities;
   std::vector<float> density, gamma, lambda;
   std::vector<std::uint32_t> neighbours;
+  std::shared_ptr<const WallDrawing> walls;
 
   void assign(const FrameView& view);
-  FrameView view() const { return {info, positions, velocities, density, gamma, lambda, neighbours}; }
+  FrameView view() const {
+    return {info, positions, velocities, density, gamma, lambda, neighbours, {}, walls};
+  }
 };
 
 /// Name, unit and fixed range of a colour field, so that colours mean the same in every picture of a scene.

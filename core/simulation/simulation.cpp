@@ -49,7 +49,8 @@ struct Simulation::State {
   Health health;
   HealthLimits limits;
   FrameInfo info;
-  std::vector<std::uint32_t> savedNeighbours;  ///< counts that came with a save, until the next step
+  std::shared_ptr<const WallDrawing> drawnWalls;  ///< as they are now; null: nobody has asked
+  std::vector<std::uint32_t> savedNeighbours;     ///< counts that came with a save, until the next step
   long frame = 0;
   double time = 0;
 };
@@ -125,7 +126,6 @@ Simulation::Simulation(Scene scene, int threads)
   }
   state.health = inspect(state.step, state.limits);
   state.info.stateHash = stateHash();
-  if (state.boundary.moves()) state.info.walls = std::make_shared<const WallDrawing>(walls());
 }
 
 Simulation::~Simulation() = default;
@@ -141,6 +141,7 @@ void Simulation::State::describeFrame() {
 /// Walls are where they end up, having been at their places of `before`.
 void Simulation::State::moveWalls(double before, double now) {
   boundary.moveTo(before, now);
+  drawnWalls.reset();
   if (gamma.method) gamma.method->wallsMoved();
   // What goes along with the walls is not lost.
   for (const auto& wall : boundary.moving()) limits.scene.include(wall->bounds());
@@ -212,7 +213,6 @@ void Simulation::advanceFrame() {
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
   state.describeFrame();
-  if (state.boundary.moves()) state.info.walls = std::make_shared<const WallDrawing>(walls());
 }
 
 long Simulation::frameAt(double time) const {
@@ -253,6 +253,14 @@ FrameView Simulation::view() const {
           step.particles.id};
 }
 
+FrameView Simulation::drawnView() const {
+  FrameView result = view();
+  if (!state_->boundary.moves()) return result;
+  if (!state_->drawnWalls) state_->drawnWalls = std::make_shared<const WallDrawing>(walls());
+  result.walls = state_->drawnWalls;
+  return result;
+}
+
 std::uint64_t Simulation::stateHash() const {
   return state_->hash();
 }
@@ -284,10 +292,8 @@ void Simulation::visitState(StateVisitor& visitor) {
   if (!visitor.reading()) return;
   state.savedNeighbours = std::move(neighbours);
   state.describeFrame();
-  if (!state.boundary.moves()) return;
   // Where walls are follows from the time.
-  state.moveWalls(state.time, state.time);
-  state.info.walls = std::make_shared<const WallDrawing>(walls());
+  if (state.boundary.moves()) state.moveWalls(state.time, state.time);
 }
 
 WallDrawing Simulation::walls() const {

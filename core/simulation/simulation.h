@@ -42,6 +42,9 @@ class Simulation {
 
   const Scene& scene() const;
   FrameView view() const;
+  /// The same for a picture: with the walls where some of them move. Their drawing is made when it is first
+  /// asked for in a frame; a run that nobody looks at makes none.
+  FrameView drawnView() const;
   /// Hash of ids, positions and velocities; the same for any number of threads.
   std::uint64_t stateHash() const;
   const RunStatistics& statistics() const;

@@ -37,7 +37,7 @@ std::vector<fs::path> sceneFiles() {
 Image picture(const Simulation& simulation, const Scene& scene, bool panels,
               const ColorMap& colors = makeColorMap()) {
   Viewer viewer(scene, simulation.walls(), {scaleFor(kWidth, kHeight), panels, false, "", colors});
-  return viewer.takePicture(simulation.view(), RunStatus{}, kWidth, kHeight);
+  return viewer.takePicture(simulation.drawnView(), RunStatus{}, kWidth, kHeight);
 }
 
 /// Compares with the golden picture of that name, or writes it. What differs is kept for looking at.

@@ -1,4 +1,5 @@
 // The scene's text in the window: typing, faults at their lines, Apply and Save as, with input made up.
+#include <algorithm>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -190,6 +191,39 @@ TEST_F(SceneEditorTest, GeometryBeginsAnewAndTheCameraStays) {
   idle(1);
   EXPECT_EQ(frame_.positions.size(), 5U * 8U * 5U);
   EXPECT_EQ(viewer_->view().camera.eye, Vec3d(4, 3, 2));
+}
+
+TEST_F(SceneEditorTest, EffectsTakenOverRunFromTheNextFrame) {
+  const auto runs = [&](const std::string& effect) {
+    const auto stages = frame_.info.stages.stages();
+    return std::ranges::count(stages, effect, &StageTime::name) == 1;
+  };
+  open();
+  for (int k = 0; k < 3; ++k) step();
+  ASSERT_FALSE(runs("vorticity_confinement"));
+  const std::size_t stages = frame_.info.stages.stages().size();
+  const std::string before = editor_.text;
+  std::string text = before;
+  editor_.replaceText(text.insert(text.find('{') + 1, R"("effects": { "vorticity_confinement": {} },)"));
+  editor_.apply = true;
+  idle(1);
+  settle();
+  EXPECT_EQ(editor_.note, "taken over");
+  step();
+  EXPECT_NEAR(frame_.info.time, 0.02, 1e-9) << "goes on";
+  EXPECT_TRUE(runs("vorticity_confinement"));
+  EXPECT_EQ(frame_.info.stages.stages().size(), stages + 1);
+  idle(2);
+  writePicture("effect_added");
+
+  editor_.replaceText(before);
+  editor_.apply = true;
+  idle(1);
+  settle();
+  step();
+  EXPECT_NEAR(frame_.info.time, 0.025, 1e-9);
+  EXPECT_FALSE(runs("vorticity_confinement"));
+  EXPECT_EQ(frame_.info.stages.stages().size(), stages);
 }
 
 TEST_F(SceneEditorTest, SaveAsKeepsCameraAndSettings) {

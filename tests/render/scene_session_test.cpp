@@ -118,6 +118,25 @@ TEST_F(SceneSessionTest, ParametersNeedNoNewBeginning) {
   EXPECT_FALSE(change());
 }
 
+TEST_F(SceneSessionTest, EffectsComeAndGoWithoutANewBeginning) {
+  const auto withEffects = [](const std::string& effects) {
+    std::string text = sceneText(0.02, 0.5);
+    return text.insert(text.rfind('}'), R"(, "effects": )" + effects);
+  };
+  writeByRename(file_, withEffects(R"({ "viscosity": {}, "wall_friction": { "coefficient": 0.5 } })"));
+  const auto added = change();
+  ASSERT_TRUE(added && added->scene);
+  EXPECT_FALSE(added->simulation);
+  ASSERT_EQ(added->scene->effects.size(), 2U);
+  EXPECT_EQ(added->scene->effects[0].name, "viscosity");
+  EXPECT_EQ(added->scene->effects[1].name, "wall_friction");
+  writeByRename(file_, sceneText(0.02, 0.5));
+  const auto removed = change();
+  ASSERT_TRUE(removed && removed->scene);
+  EXPECT_FALSE(removed->simulation);
+  EXPECT_TRUE(removed->scene->effects.empty());
+}
+
 TEST_F(SceneSessionTest, FluidAndWallsBeginAnew) {
   writeInPlace(file_, sceneText(0.02, 0.8));
   const auto changed = change();

@@ -1,6 +1,7 @@
 // The simulation's thread without a window; run it under the thread sanitizer, too.
 #include "app/viewer/simulation_thread.h"
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 
@@ -8,6 +9,7 @@
 
 #include "core/io/save_file.h"
 #include "tests/render/test_scene.h"
+#include "tests/support/test_effects.h"
 
 namespace migiwa {
 namespace {
@@ -22,7 +24,7 @@ bool waitFor(SimulationThread& simulation, FrameSnapshot& frame, const std::func
   return false;
 }
 
-class SimulationThreadTest : public testing::Test {
+class SimulationThreadTest : public ::testing::Test {
  protected:
   Scene scene_ = smallScene();
   SimulationThread simulation_{scene_, 2, Pace::unlimited};
@@ -76,6 +78,92 @@ TEST_F(SimulationThreadTest, SettingsHoldFromTheNextFrameAndAfterAReset) {
   simulation_.reset();
   ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time == 0; }));
   EXPECT_EQ(frame_.info.handling, "no correction");
+}
+
+/// The stages that a frame lists, but for those of a step without effects.
+std::vector<std::string> effectStages(const FrameSnapshot& frame) {
+  std::vector<std::string> names;
+  for (const StageTime& stage : frame.info.stages.stages())
+    if (std::ranges::find(effectNames(), stage.name) != effectNames().end()) names.push_back(stage.name);
+  return names;
+}
+
+TEST_F(SimulationThreadTest, EffectsTakenOverLiveHoldFromTheNextFrame) {
+  using Names = std::vector<std::string>;
+  constexpr int kFrames = 4;
+  Settings settings{scene_.solver, scene_.boundary, scene_.effects};
+  ASSERT_TRUE(settings.effects.empty());
+  Simulation reference(scene_, 1), without(scene_, 1);
+  long frames = 0;
+  const auto stepBoth = [&] {
+    for (int k = 0; k < kFrames; ++k) {
+      const double before = frame_.info.time;
+      simulation_.step();
+      ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time > before; }));
+      reference.advanceFrame(), without.advanceFrame();
+      ASSERT_EQ(frame_.info.stateHash, reference.stateHash()) << "frame " << ++frames;
+    }
+  };
+  const auto apply = [&](const std::string& effects) {
+    settings.effects = testing::effectsOf(effects);
+    simulation_.apply(settings);
+    reference.apply(settings);
+  };
+  ASSERT_NO_FATAL_FAILURE(stepBoth());
+  EXPECT_EQ(effectStages(frame_), Names{});
+  const std::size_t stagesWithout = frame_.info.stages.stages().size();
+
+  // Added: it has its stage, and works, from the first frame on.
+  apply(R"({"viscosity": {"xsph": 0.3}})");
+  const std::uint64_t before = reference.stateHash();
+  ASSERT_NO_FATAL_FAILURE(stepBoth());
+  EXPECT_EQ(effectStages(frame_), Names{"viscosity"});
+  EXPECT_EQ(frame_.info.stages.stages().size(), stagesWithout + 1);
+  EXPECT_NE(frame_.info.stateHash, before);
+  EXPECT_NE(frame_.info.stateHash, without.stateHash()) << "the effect did nothing";
+
+  // One more, and the first with another value.
+  apply(R"({"viscosity": {"xsph": 0.1}, "artificial_pressure": {}})");
+  ASSERT_NO_FATAL_FAILURE(stepBoth());
+  EXPECT_EQ(effectStages(frame_), (Names{"artificial_pressure", "viscosity"}));
+
+  // All removed: the stages are those of the start, and the run is one that goes on without any.
+  apply("{}");
+  ASSERT_NO_FATAL_FAILURE(stepBoth());
+  EXPECT_EQ(effectStages(frame_), Names{});
+  EXPECT_EQ(frame_.info.stages.stages().size(), stagesWithout);
+}
+
+TEST(MovingWallsOfAThread, AreInEachFrameWhereTheyWereThen) {
+  const Scene scene = parseScene(R"({
+    "format": 1, "particle_spacing": 0.1, "gravity": [0, 0, 0],
+    "fluid": [{"shape": "box", "min": [1, 0, 0], "max": [1.4, 0.4, 0.4]}],
+    "boundary": {"surfaces": [{"shape": "box", "fluid": "outside", "min": [0, 0, 0], "max": [0.2, 1, 0.5],
+                               "motion": {"velocity": [-1, 0, 0]}}]},
+    "solver": {"time_step": 0.005}
+  })",
+                                 "moving.json");
+  SimulationThread simulation(scene, 1, Pace::unlimited);
+  FrameSnapshot frame;
+  const auto place = [&] {
+    double sum = 0;
+    for (const LineSegment& line : frame.walls->lines)
+      sum += static_cast<double>(line.from.x() + line.to.x());
+    return sum / (2 * static_cast<double>(frame.walls->lines.size()));
+  };
+  ASSERT_TRUE(simulation.takeFrame(frame));
+  ASSERT_NE(frame.walls, nullptr);
+  EXPECT_NEAR(place(), 0.1, 1e-6);
+  for (int k = 0; k < 5; ++k) {
+    const double before = frame.info.time;
+    simulation.step();
+    ASSERT_TRUE(waitFor(simulation, frame, [&] { return frame.info.time > before; }));
+    ASSERT_NE(frame.walls, nullptr);
+    EXPECT_NEAR(place(), 0.1 - frame.info.time, 1e-6);
+  }
+  simulation.reset();
+  ASSERT_TRUE(waitFor(simulation, frame, [&] { return frame.info.time == 0; }));
+  EXPECT_NEAR(place(), 0.1, 1e-6);
 }
 
 /// A state on disk, from one thread's simulation to another's and to that of the command line.

@@ -237,5 +237,60 @@ TEST(FastPlate, HasTheParticlesThatWereBeforeItStillBeforeIt) {
   }
 }
 
+/// A block that counts how often its drawing is made.
+class CountedBlock final : public Surface {
+ public:
+  CountedBlock(const Vec3d& min, const Vec3d& max) : box_(min, max, Box::Fluid::outside) {}
+
+  void describe(FieldVisitor&) override {}
+  float distance(const Vec3f& p, Vec3f& normal) const override { return box_.distance(p, normal); }
+  bool project(Vec3f& p, float margin) const override { return box_.project(p, margin); }
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {
+    box_.firstHits(origin, directions, hits);
+  }
+  Bounds bounds() const override { return box_.bounds(); }
+  void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
+    ++drawings_;
+    box_.wireframe(scene, out);
+  }
+  int drawings() const { return drawings_; }
+
+ private:
+  Box box_;
+  mutable int drawings_ = 0;
+};
+
+TEST(MovingWall, IsDrawnOnlyForThoseWhoLook) {
+  Scene scene = smallDamBreak();
+  Simulation still(scene, 1);
+  EXPECT_EQ(still.drawnView().walls, nullptr) << "that nothing moves is known from the start";
+
+  const auto wall = std::make_shared<CountedBlock>(Vec3d(-0.2, 0, 0), Vec3d(-0.1, 0.8, 0.3));
+  wall->motion = atVelocity({0.5, 0, 0});
+  scene.surfaces = {wall};
+  Simulation simulation(scene, 1);
+  for (int k = 0; k < 5; ++k) simulation.advanceFrame();
+  EXPECT_EQ(simulation.view().walls, nullptr);
+  EXPECT_EQ(wall->drawings(), 0);
+
+  std::shared_ptr<const WallDrawing> before;
+  for (int k = 1; k <= 3; ++k) {
+    simulation.advanceFrame();
+    FrameSnapshot snapshot;
+    snapshot.assign(simulation.drawnView());
+    EXPECT_EQ(snapshot.view().walls, simulation.drawnView().walls) << "made once a frame";
+    EXPECT_EQ(wall->drawings(), k);
+    ASSERT_NE(snapshot.walls, nullptr);
+    EXPECT_NE(snapshot.walls, before);
+    before = snapshot.walls;
+    // The twelve edges of a block, of which every corner is an end of three.
+    ASSERT_EQ(snapshot.walls->lines.size(), 12U);
+    double sum = 0;
+    for (const LineSegment& line : snapshot.walls->lines)
+      sum += 0.5 * static_cast<double>(line.from.x() + line.to.x());
+    EXPECT_NEAR(sum / 12, -0.15 + 0.5 * simulation.time(), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace migiwa
