@@ -53,7 +53,7 @@ class Drawing {
              pictureRecord(view, variant.overrides));
       }
     }
-    if (!simulation.statistics().failed()) return true;
+    if (!simulation.stopped()) return true;
     for (const Trouble& trouble : simulation.statistics().trouble) {
       std::cerr << options_.scene << ": " << trouble.kind << " at step " << trouble.step << ": "
                 << trouble.detail << '\n';

@@ -1,4 +1,5 @@
 // `migiwa simulate SCENE`: runs without any picture.
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -49,7 +50,7 @@ class SimulateRun {
       });
     }
     finishExport();
-    if (!options_.save.empty() && !simulation_.stopped()) save();
+    if (!options_.save.empty() && goodState()) save();
     return report(settled);
   }
 
@@ -97,6 +98,15 @@ class SimulateRun {
                 << ")\n";
   }
 
+  /// A step that goes wrong is not taken: what is there is the state of the last good one.
+  bool goodState() const {
+    const FrameView view = simulation_.view();
+    const auto finite = [](const Float4& v) { return v.xyz().allFinite(); };
+    return simulation_.statistics().lostParticles == 0 &&
+           std::all_of(view.positions.begin(), view.positions.end(), finite) &&
+           std::all_of(view.velocities.begin(), view.velocities.end(), finite);
+  }
+
   void save() { writeSave(options_.save, simulation_, sampler_, common_.overrides); }
 
   int report(const SettledMeasures& settled) const {
@@ -106,7 +116,7 @@ class SimulateRun {
     } else {
       writeTextFile(options_.report, reportText(report));
     }
-    if (!simulation_.statistics().failed()) return kDone;
+    if (!simulation_.stopped()) return kDone;
     for (const Trouble& trouble : report.trouble)
       std::cerr << options_.scene << ": " << trouble.kind << " at step " << trouble.step << ": "
                 << trouble.detail << '\n';

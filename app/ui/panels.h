@@ -16,5 +16,7 @@ void viewPanel(PanelModel& model);
 /// Needs the model's whatIf.
 void whatIfPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
+/// Energies over the run, against what was given.
+void energyPanel(PanelModel& model);
 
 }  // namespace migiwa

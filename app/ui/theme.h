@@ -12,7 +12,8 @@ inline constexpr ImU32 kPaper = IM_COL32(250, 251, 252, 205);   ///< behind it
 inline constexpr ImU32 kPaperEdge = IM_COL32(60, 75, 95, 60);
 inline constexpr ImU32 kAlert = IM_COL32(255, 143, 115, 255);
 inline constexpr ImU32 kAccent = IM_COL32(71, 184, 172, 255);
-inline constexpr ImU32 kWell = IM_COL32(17, 22, 29, 255);  ///< behind plots and bars
+inline constexpr ImU32 kMotion = IM_COL32(233, 196, 106, 255);  ///< curves of what moves
+inline constexpr ImU32 kWell = IM_COL32(17, 22, 29, 255);       ///< behind plots and bars
 inline constexpr ImU32 kGridLine = IM_COL32(255, 255, 255, 28);
 }  // namespace theme
 

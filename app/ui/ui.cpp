@@ -126,6 +126,7 @@ void Ui::panels(PanelModel& model, int height) {
             [&](PanelModel& whole) { effectPanel(whole, effect); });
   }
   section("View", lines > 33, bold, model, viewPanel);
+  section("Energy", lines > 58, bold, model, energyPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
   if (model.whatIf != nullptr) section("What if", lines > 60, bold, model, whatIfPanel);
   ImGui::End();

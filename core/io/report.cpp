@@ -38,6 +38,15 @@ void visitReport(SomeReport& report, const Visit& visit) {
   visit("/max_penetration", report.maxPenetration);
   visit("/max_speed", report.maxSpeed);
   visit("/peak_memory_bytes", report.peakMemoryBytes);
+  visit("/energy/start", report.energyStart);
+  visit("/energy/kinetic", report.energyKinetic);
+  visit("/energy/potential", report.energyPotential);
+  visit("/energy/work/walls", report.energyWalls);
+  visit("/energy/work/emitters", report.energyEmitters);
+  visit("/energy/work/effects", report.energyEffects);
+  visit("/energy/dissipated", report.energyDissipated);
+  visit("/energy/largest_gain", report.energyGain);
+  visit("/energy/stored_at_start", report.energyStored);
   visit("/trouble", report.trouble);
   visit("/settled/height", report.settled.height);
   visit("/settled/expected_height", report.settled.expectedHeight);

@@ -36,6 +36,11 @@ struct Report {
   Measure maxPenetration;   ///< (m)
   Measure maxSpeed;         ///< (m/s)
   Measure peakMemoryBytes;  ///< of the whole program
+  /// Energies (J): at the start and at the end, what was given since, and what the solver took.
+  Measure energyStart, energyKinetic, energyPotential, energyWalls, energyEmitters, energyEffects,
+      energyDissipated;
+  Measure energyGain;    ///< the most that the solver had ever added, over the mass (J/kg)
+  Measure energyStored;  ///< in the density errors of the start, over the mass (J/kg)
   std::vector<Trouble> trouble;
   SettledMeasures settled;
 };

@@ -12,6 +12,19 @@ namespace migiwa {
 
 namespace {
 
+/// In joules; `mass` of a particle (kg).
+void reportEnergy(const EnergyBalance& energy, double mass, Report& report) {
+  report.energyStart = mass * energy.start;
+  report.energyKinetic = mass * energy.kinetic;
+  report.energyPotential = mass * energy.potential;
+  report.energyWalls = mass * energy.walls;
+  report.energyEmitters = mass * energy.emitters;
+  report.energyEffects = mass * energy.effects;
+  report.energyDissipated = -mass * energy.solver;
+  report.energyGain = energy.mostGained;
+  report.energyStored = energy.stored;
+}
+
 /// The value that a fraction `q` of all values does not exceed (nearest rank).
 Measure quantile(std::vector<float> values, double q) {
   if (values.empty()) return std::nullopt;
@@ -77,6 +90,8 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   report.maxPenetration = run.maxPenetration;
   report.maxSpeed = run.maxSpeed;
   report.peakMemoryBytes = peakMemory();
+  const double spacing = simulation.scene().particleSpacing;
+  reportEnergy(run.energy, simulation.settings().solver.restDensity * spacing * spacing * spacing, report);
   report.trouble = run.trouble;
   report.settled = settled;
   return report;

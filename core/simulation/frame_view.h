@@ -12,6 +12,7 @@
 #include "core/base/types.h"
 #include "core/boundary/wall_drawing.h"
 #include "core/scene/color_field.h"
+#include "core/simulation/energy_balance.h"
 #include "core/solver/iteration_error.h"
 
 namespace migiwa {
@@ -27,6 +28,7 @@ struct FrameInfo {
   StageTimes stages;                   ///< of the last frame (s)
   double stepSeconds = 0;              ///< wall time of the last frame's mean substep
   std::uint64_t stateHash = 0;
+  std::vector<EnergySample> energy;  ///< over the run so far
 };
 
 struct FrameView {

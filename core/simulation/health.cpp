@@ -8,6 +8,7 @@ namespace migiwa {
 HealthLimits healthLimits(const Scene& scene) {
   HealthLimits limits;
   limits.mostPenetration = scene.particleSpacing;
+  if (const Bounds bounds = scene.bounds(); !bounds.empty()) limits.centre = bounds.center().cast<float>();
   // Far enough for any splash to come back, near enough that what fell through a hole is found.
   if (!scene.surfaces.empty()) {
     const Bounds bounds = scene.bounds();
@@ -30,6 +31,7 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
             continue;
           }
           part.maxSpeed = std::max(part.maxSpeed, velocity.norm());
+          part.energy.add(position, velocity, limits.centre);
           const bool clear = particles.position[i].w > 0;
           const float penetration = clear ? 0 : -state.boundary.distance(position);
           part.maxPenetration = std::max(part.maxPenetration, penetration);
@@ -45,6 +47,7 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
         if (a.lost + a.nonfinite == 0) a.firstBad = b.firstBad;
         a.maxSpeed = std::max(a.maxSpeed, b.maxSpeed);
         a.maxPenetration = std::max(a.maxPenetration, b.maxPenetration);
+        a.energy += b.energy;
         a.lost += b.lost;
         a.nonfinite += b.nonfinite;
         return a;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 
 #include "core/base/state_hash.h"
 #include "core/boundary/boundary.h"
@@ -30,6 +31,9 @@ struct Simulation::State {
   }
   void configure();
   void advanceSubstep(double start, double dt);
+  EnergySums emit(double start);
+  void partCrowded();
+  void refuseStep();
   void moveWalls(double before, double now);
   double largestSpeed(double start, double span) const;
   std::uint64_t hash() {
@@ -51,6 +55,7 @@ struct Simulation::State {
   FrameInfo info;
   std::shared_ptr<const WallDrawing> drawnWalls;  ///< as they are now; null: nobody has asked
   std::vector<std::uint32_t> savedNeighbours;     ///< counts that came with a save, until the next step
+  bool stepTaken = true;                          ///< false: the last step was refused
   long frame = 0;
   double time = 0;
 };
@@ -60,8 +65,9 @@ namespace {
 /// Substeps a frame has at most: a run that needs more is told so instead of standing still.
 constexpr long kMostSubsteps = 1000;
 
-/// Density error of a start above which fluid is on top of fluid. A lattice between walls reads some percent.
-constexpr double kCrowdedStart = 0.5;
+/// Density error of a start, or of what a step leaves, above which fluid is on top of fluid. A lattice
+/// between walls reads some percent.
+constexpr double kCrowded = 0.5;
 
 }  // namespace
 
@@ -117,7 +123,7 @@ Simulation::Simulation(Scene scene, int threads)
                               "it; they were moved out without gaining speed");
   } else {
     prepareFields(state.step);
-    if (const double error = state.step.errors.back().max; error > kCrowdedStart) {
+    if (const double error = state.step.errors.back().max; error > kCrowded) {
       relax(state.step);
       state.statistics.note("started_crowded", 0,
                             "sources overlap: density " + std::to_string(1 + error) +
@@ -125,6 +131,7 @@ Simulation::Simulation(Scene scene, int threads)
     }
   }
   state.health = inspect(state.step, state.limits);
+  state.statistics.energy.begin(state.health.energy, state.step);
   state.info.stateHash = stateHash();
 }
 
@@ -136,6 +143,7 @@ void Simulation::State::describeFrame() {
   info.iterations = step.iterations;
   info.errors = statistics.steps > 0 ? step.errors : std::vector<IterationError>();
   info.stateHash = hash();
+  info.energy = statistics.energy.history;
 }
 
 /// Walls are where they end up, having been at their places of `before`.
@@ -159,6 +167,43 @@ double Simulation::State::largestSpeed(double start, double span) const {
   return std::max(fluid, emission.largestSpeed(start, start + span)) + wall;
 }
 
+/// Returns the sums of what has come in.
+EnergySums Simulation::State::emit(double start) {
+  const std::size_t first = step.particles.size();
+  emission.emit(start, step, statistics);
+  const EnergySums given = energySums(step.particles, first, limits.centre);
+  statistics.energy.emitters += given.kinetic + given.potential(scene.gravity);
+  return given;
+}
+
+/// A next step would undo what this one has left in one go, the faster the shorter it is: then the CFL rule
+/// makes the steps shorter still, and energy grows without bound. Velocities, and so momentum, stay.
+void Simulation::State::partCrowded() {
+  statistics.note("crowded", statistics.steps + 1,
+                  "a step left density " + std::to_string(1 + step.errors.back().max) +
+                      " of that at rest; particles were moved apart without gaining speed");
+  const std::vector<IterationError> errors = step.errors;
+  const int iterations = step.iterations;
+  relax(step);
+  step.errors = errors, step.iterations = iterations;
+}
+
+/// The state stays the last good one, and the simulation stops there.
+void Simulation::State::refuseStep() {
+  const StepFault fault = findFault(step, effects);
+  std::string neighbours;
+  constexpr std::size_t kNamed = 8;
+  for (std::size_t k = 0; k < std::min(fault.neighbours.size(), kNamed); ++k)
+    neighbours += (k > 0 ? ", " : "") + std::to_string(fault.neighbours[k]);
+  if (fault.neighbours.size() > kNamed) neighbours += ", ...";
+  statistics.nonfiniteParticles = std::max(1L, fault.particles);
+  statistics.note("nonfinite", statistics.steps + 1,
+                  std::to_string(fault.particles) + " particles are not finite after the stage \"" +
+                      fault.stage + "\", particle " + std::to_string(fault.particle) +
+                      " among them, whose neighbours are " + (neighbours.empty() ? "none" : neighbours) +
+                      "; the step was not taken");
+}
+
 void Simulation::State::advanceSubstep(double start, double dt) {
   const auto began = std::chrono::steady_clock::now();
   step.timeStep = static_cast<float>(dt);
@@ -166,9 +211,16 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   savedNeighbours.clear();
   step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
-  if (!emission.empty()) step.times.time("emitters", [&] { emission.emit(start, step, statistics); });
-  advanceStep(step, effects);
-  step.times.time("check", [&] { health = inspect(step, limits); });
+  EnergySums before = health.energy;
+  if (statistics.steps == 0) statistics.energy.stored = storedEnergy(step, dt);
+  if (!emission.empty()) step.times.time("emitters", [&] { before += emit(start); });
+  stepTaken = advanceStep(step, effects);
+  if (!stepTaken) return refuseStep();
+  if (step.errors.back().max > kCrowded) step.times.time("relax", [&] { partCrowded(); });
+  step.times.time("check", [&] {
+    health = inspect(step, limits);
+    statistics.energy.record(step, before, health.energy, dt, start + dt);
+  });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   statistics.record(step, health, dt, seconds);
 }
@@ -202,6 +254,12 @@ void Simulation::advanceFrame() {
     }
     const double dt = left / static_cast<double>(std::max(parts, 1L));
     state.advanceSubstep(start, dt);
+    if (!state.stepTaken) {
+      // What is left is the state of the last good step, which may be within the frame.
+      state.time = start;
+      state.describeFrame();
+      return;
+    }
     left -= dt;
     ++taken;
     frameTimes.add(state.step.times);
@@ -294,6 +352,7 @@ void Simulation::visitState(StateVisitor& visitor) {
   state.describeFrame();
   // Where walls are follows from the time.
   if (state.boundary.moves()) state.moveWalls(state.time, state.time);
+  state.health = inspect(state.step, state.limits);
 }
 
 WallDrawing Simulation::walls() const {

@@ -65,6 +65,7 @@ void RunStatistics::visit(StateVisitor& visitor) {
   visitor.number("/statistics/max_penetration", maxPenetration);
   visitor.number("/statistics/max_speed", maxSpeed);
   visitor.array("statistics/step_seconds", stepSeconds);
+  energy.visit(visitor);
 
   std::vector<StageTime> times = stages.stages();
   auto count = static_cast<std::int64_t>(times.size());

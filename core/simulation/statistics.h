@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/stage_times.h"
+#include "core/simulation/energy_balance.h"
 
 namespace migiwa {
 
@@ -35,8 +36,9 @@ struct RunStatistics {
   long nonfiniteParticles = 0;
   double maxPenetration = 0;  ///< (m)
   double maxSpeed = 0;        ///< (m/s)
-  std::string gammaPicked;    ///< the gamma method that runs; empty without correction
-  std::string gammaReason;    ///< why "auto" took it; empty when the scene names it
+  EnergyBalance energy;
+  std::string gammaPicked;  ///< the gamma method that runs; empty without correction
+  std::string gammaReason;  ///< why "auto" took it; empty when the scene names it
   std::vector<Trouble> trouble;
 
   void note(const std::string& kind, long step, const std::string& detail);

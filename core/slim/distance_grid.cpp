@@ -148,7 +148,9 @@ void DistanceGrid::agreeOnSigns(const std::vector<std::uint8_t>& band) {
 DistanceGrid::Sample DistanceGrid::at(const Vec3f& p) const {
   const Vec3f last = (size_.cast<float>().array() - 1.001F).matrix();
   const Vec3f raw = (p - origin_) * inverseCell_;
-  const Vec3f local = raw.cwiseMax(0.0F).cwiseMin(last);
+  Vec3f local;
+  // In this order what is not a number becomes the first node.
+  for (int axis = 0; axis < 3; ++axis) local[axis] = std::min(std::max(0.0F, raw[axis]), last[axis]);
   const int x = static_cast<int>(local.x()), y = static_cast<int>(local.y()), z = static_cast<int>(local.z());
   const float u = local.x() - static_cast<float>(x), v = local.y() - static_cast<float>(y),
               w = local.z() - static_cast<float>(z);

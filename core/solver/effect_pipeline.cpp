@@ -16,19 +16,33 @@ EffectPipeline::EffectPipeline(const std::vector<NamedEffect>& effects) {
   buffers_.resize(buffers);
 }
 
+namespace {
+
+/// Runs each of the stages, and books what they change of an energy as the effects' work.
+template <class Energy, class Run>
+void runStages(StepState& state, const std::vector<NamedEffect>& stages, const Energy& energy,
+               const Run& run) {
+  if (stages.empty()) return;
+  state.times.time(stages.front().name, [&] { state.effectWork -= energy(state); });
+  for (const NamedEffect& stage : stages) state.times.time(stage.name, [&] { run(*stage.effect); });
+  state.times.time(stages.back().name, [&] { state.effectWork += energy(state); });
+}
+
+}  // namespace
+
 void EffectPipeline::changePrediction(StepState& state) {
-  for (const NamedEffect& stage : prediction_)
-    state.times.time(stage.name, [&] { stage.effect->changePrediction(state, buffers_); });
+  runStages(state, prediction_, predictedEnergy,
+            [&](const Effect& effect) { effect.changePrediction(state, buffers_); });
 }
 
 void EffectPipeline::changePositions(StepState& state, float weight) {
-  for (const NamedEffect& stage : iteration_)
-    state.times.time(stage.name, [&] { stage.effect->changePositions(state, weight); });
+  runStages(state, iteration_, predictedEnergy,
+            [&](const Effect& effect) { effect.changePositions(state, weight); });
 }
 
 void EffectPipeline::changeVelocities(StepState& state) {
-  for (const NamedEffect& stage : velocity_)
-    state.times.time(stage.name, [&] { stage.effect->changeVelocities(state, buffers_); });
+  runStages(state, velocity_, velocityEnergy,
+            [&](const Effect& effect) { effect.changeVelocities(state, buffers_); });
 }
 
 double EffectPipeline::longestStep(const StepState& state) const {

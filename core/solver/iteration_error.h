@@ -7,6 +7,7 @@ namespace migiwa {
 struct IterationError {
   double mean = 0;
   double max = 0;
+  double meanSquare = 0;  ///< mean of the squares
 };
 
 }  // namespace migiwa

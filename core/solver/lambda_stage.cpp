@@ -18,7 +18,7 @@
 namespace migiwa::stages {
 
 struct ErrorSum {
-  double sum = 0;
+  double sum = 0, squares = 0;
   float max = 0;
 };
 
@@ -84,6 +84,7 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
     state.lambda[i] = lambda;
     state.paired[i] = Float4(state.current[i].xyz(), divideByGamma ? lambda * inverseGamma : lambda);
     error.sum += static_cast<double>(constraint);
+    error.squares += static_cast<double>(constraint * constraint);
     error.max = std::max(error.max, constraint);
   }
   return error;
@@ -113,9 +114,11 @@ IterationError stages::computeLambda(StepState& state) {
       state.pool, n, ErrorSum{},
       [&](std::size_t begin, std::size_t end) { return ofRange(state, begin, end); },
       [](ErrorSum a, const ErrorSum& b) {
-        return ErrorSum{a.sum + b.sum, std::max(a.max, b.max)};
+        return ErrorSum{a.sum + b.sum, a.squares + b.squares, std::max(a.max, b.max)};
       });
-  return {n > 0 ? error.sum / static_cast<double>(n) : 0, static_cast<double>(error.max)};
+  const double share = n > 0 ? 1 / static_cast<double>(n) : 0;
+  return {n > 0 ? error.sum / static_cast<double>(n) : 0, static_cast<double>(error.max),
+          error.squares * share};
 }
 
 }  // namespace migiwa

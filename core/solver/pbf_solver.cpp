@@ -1,6 +1,9 @@
 #include "core/solver/pbf_solver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "core/solver/acceleration.h"
 #include "core/solver/stages.h"
@@ -9,6 +12,23 @@
 namespace migiwa {
 
 namespace {
+
+constexpr std::string_view kEffects = "effects";
+
+/// Whether the places where the step ends are all finite. One that is not makes the sum so.
+bool endsFinite(const StepState& state) {
+  const float sum = parallelReduce(
+      state.pool, state.particles.size(), 0.0F,
+      [&](std::size_t begin, std::size_t end) {
+        // What is finite times zero is zero, so that no sum of large coordinates overflows.
+        float part = 0;
+        for (std::size_t i = begin; i < end; ++i)
+          part += 0 * state.current[i].x + 0 * state.current[i].y + 0 * state.current[i].z;
+        return part;
+      },
+      [](float a, float b) { return a + b; });
+  return sum == 0;
+}
 
 /// Predicts that every particle stays where it is.
 void takePositions(StepState& state) {
@@ -19,29 +39,40 @@ void takePositions(StepState& state) {
 
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
-/// stay.
-void solveConstraint(StepState& state, EffectPipeline& effects) {
+/// stay. `watch(stage)` is called after every stage that may change what the step goes on with.
+template <class Watch>
+void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& watch) {
   const SolverParameters& parameters = state.parameters;
   state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
   if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
+  watch("neighbours");
   effects.changePrediction(state);
+  watch(kEffects);
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
+  watch("gamma");
   state.errors.clear();
   state.iterations = 0;
   Chebyshev chebyshev;
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
+    watch("lambda");
     if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
       break;
     if (state.iterations >= parameters.maxIterations) break;
     const bool stretch = parameters.acceleration == Acceleration::chebyshev;
     const float weight = stretch ? chebyshev.next(state.errors, parameters.tolerance) : 1;
-    state.times.time("position", [&] { stages::movePositions(state, weight); });
+    state.times.time("position", [&] {
+      stages::movePositions(state, weight);
+      if (state.boundary.moves()) state.wallWork.iterate(wallPush(state), weight);
+    });
+    watch("position");
     effects.changePositions(state, weight);
+    watch(kEffects);
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });
       if (state.gammaMethod != nullptr)
         state.times.time("gamma_refresh", [&] { stages::refreshGamma(state); });
+      watch("projection");
     }
     ++state.iterations;
   }
@@ -49,14 +80,92 @@ void solveConstraint(StepState& state, EffectPipeline& effects) {
 
 }  // namespace
 
-void advanceStep(StepState& state, EffectPipeline& effects) {
+namespace {
+
+/// The part of a step that keeps the particles' own positions. Gravity is in the velocities afterwards.
+template <class Watch>
+void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& watch) {
+  state.wallWork.clear();
+  state.effectWork = 0;
   state.times.time("predict", [&] { stages::predict(state); });
-  solveConstraint(state, effects);
+  watch("predict");
+  solveConstraint(state, effects, watch);
+  state.times.time("velocity", [&] { stages::projectAll(state); });
+  watch("projection");
+}
+
+/// Takes back what predict() has added.
+void undoPrediction(StepState& state) {
+  const Vec3f gain = state.timeStep * state.gravity;
+  for (Float4& velocity : state.particles.velocity) velocity.setXyz(velocity.xyz() - gain);
+}
+
+/// Looks through the state after each stage, and keeps what it finds first.
+class FaultFinder {
+ public:
+  explicit FaultFinder(const StepState& state) : state_(state) {}
+
+  void begin() {
+    const Particles& particles = state_.particles;
+    take("before the step", [&](std::size_t i) {
+      return particles.position[i].xyz().allFinite() && particles.velocity[i].xyz().allFinite();
+    });
+  }
+  void after(std::string_view stage) {
+    const auto ofLength = [&](const std::vector<float>& values, std::size_t i) {
+      return values.size() != state_.particles.size() || std::isfinite(values[i]);
+    };
+    const bool solved = stage == "lambda", corrected = stage == "gamma" || stage == "projection";
+    take(stage, [&](std::size_t i) {
+      return state_.current[i].xyz().allFinite() &&
+             (!solved || (ofLength(state_.density, i) && ofLength(state_.lambda, i))) &&
+             (!corrected || ofLength(state_.gamma, i));
+    });
+  }
+  StepFault result() const { return found_; }
+
+ private:
+  template <class Fine>
+  void take(std::string_view stage, const Fine& fine) {
+    if (found_.particles > 0) return;
+    for (std::size_t i = 0; i < state_.particles.size(); ++i) {
+      if (fine(i)) continue;
+      if (found_.particles++ > 0) continue;
+      found_.stage = stage;
+      found_.particle = state_.particles.id[i];
+      if (state_.neighbours.counts().size() == state_.particles.size())
+        for (const std::uint32_t j : state_.neighbours.of(i))
+          found_.neighbours.push_back(state_.particles.id[j]);
+    }
+  }
+
+  const StepState& state_;
+  StepFault found_;
+};
+
+}  // namespace
+
+bool advanceStep(StepState& state, EffectPipeline& effects) {
+  predictAndSolve(state, effects, [](std::string_view) {});
+  bool finite = true;
   state.times.time("velocity", [&] {
-    stages::projectAll(state);
-    stages::updateVelocities(state);
+    finite = endsFinite(state);
+    if (finite) stages::updateVelocities(state);
   });
+  if (!finite) {
+    undoPrediction(state);
+    return false;
+  }
   effects.changeVelocities(state);
+  return true;
+}
+
+StepFault findFault(StepState& state, EffectPipeline& effects) {
+  FaultFinder finder(state);
+  finder.begin();
+  predictAndSolve(state, effects, [&](std::string_view stage) { finder.after(stage); });
+  undoPrediction(state);
+  return finder.result();
 }
 
 void relax(StepState& state) {
@@ -65,14 +174,19 @@ void relax(StepState& state) {
   constexpr double kCalm = 0.04;
   constexpr int kMostSolves = 30;
   EffectPipeline none;
+  // Where the step is to go by another form, this is no step: only the true gradient gets fluid out of walls.
+  const PositionStep form = std::exchange(state.parameters.positionStep, PositionStep::gradient);
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
-    solveConstraint(state, none);
+    solveConstraint(state, none, [](std::string_view) {});
     stages::projectAll(state);
     stages::acceptPositions(state);
+    // With the neighbours of where particles are now: those of the solve are not, after a long way.
+    prepareFields(state);
     if (state.errors.back().max <= kCalm) break;
   }
+  state.parameters.positionStep = form;
 }
 
 long stabilise(StepState& state) {

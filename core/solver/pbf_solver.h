@@ -2,13 +2,29 @@
 // stages.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "core/solver/effect_pipeline.h"
 #include "core/solver/step_state.h"
 
 namespace migiwa {
 
-/// Advances the state by `state.timeStep`, with what the effects add.
-void advanceStep(StepState& state, EffectPipeline& effects);
+/// Advances the state by `state.timeStep`, with what the effects add. Where a particle would end at a place
+/// that is not finite the step is refused: returns false, and positions and velocities are those of before,
+/// in another order.
+bool advanceStep(StepState& state, EffectPipeline& effects);
+
+/// What of a refused step was not finite first.
+struct StepFault {
+  std::string stage;                      ///< the one that left it so
+  std::uint32_t particle = 0;             ///< id of one of them
+  long particles = 0;                     ///< how many there are
+  std::vector<std::uint32_t> neighbours;  ///< ids of that particle's
+};
+/// Makes a refused step once more and looks through the state after every stage.
+StepFault findFault(StepState& state, EffectPipeline& effects);
 
 /// For fluid that starts inside walls: projects it out and solves the density on the positions alone, so that
 /// the push does not become speed. Returns how many particles were inside; 0: nothing was done.

@@ -11,6 +11,7 @@
 #include "core/base/stage_times.h"
 #include "core/boundary/boundary.h"
 #include "core/boundary/gamma_method.h"
+#include "core/solver/energy.h"
 #include "core/solver/iteration_error.h"
 #include "core/solver/parameters.h"
 #include "core/sph/neighbour_lists.h"
@@ -77,6 +78,10 @@ struct StepState {
 
   // Guards that acted in this step.
   long gammaFloored = 0;
+
+  // Energy that the step was given, see core/solver/energy.h.
+  WallWork wallWork;
+  double effectWork = 0;  ///< by the effects (m^2/s^2); friction at moving walls included
 
   StageTimes times;
 

@@ -20,8 +20,12 @@ Box boundingBox(std::span<const Float4> positions, ThreadPool& pool) {
       [&](std::size_t begin, std::size_t end) {
         Box box;
         for (std::size_t i = begin; i < end; ++i) {
-          box.min = box.min.cwiseMin(positions[i].xyz());
-          box.max = box.max.cwiseMax(positions[i].xyz());
+          const Vec3f p = positions[i].xyz();
+          for (int axis = 0; axis < 3; ++axis) {
+            if (!std::isfinite(p[axis])) continue;
+            box.min[axis] = std::min(box.min[axis], p[axis]);
+            box.max[axis] = std::max(box.max[axis], p[axis]);
+          }
         }
         return box;
       },
@@ -35,8 +39,10 @@ Box boundingBox(std::span<const Float4> positions, ThreadPool& pool) {
 }  // namespace
 
 int CellGrid::index(float offset, int axis) const {
-  // Clamped as float first: a cast of what does not fit an int is undefined.
+  // Clamped as float first: a cast of what does not fit an int is undefined. What is not finite is kept in
+  // the first cell, whose particles find it out of reach.
   const float scaled = std::floor(offset * inverseCell_);
+  if (!std::isfinite(scaled)) return 0;
   const auto last = static_cast<float>(size_[axis]);
   return static_cast<int>(std::clamp(scaled, -1.0F, last));
 }
@@ -50,14 +56,17 @@ void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPo
     size_[0] = size_[1] = size_[2] = 1;
     return;
   }
-  const Box box = boundingBox(positions, pool);
+  Box box = boundingBox(positions, pool);
+  // Without a single finite coordinate along an axis the box has no place there.
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) box.min[axis] = box.max[axis] = 0;
   originX_ = box.min.x(), originY_ = box.min.y(), originZ_ = box.min.z();
-  const Vec3f extent = box.max - box.min;
+  const Vec3d extent = (box.max.cast<double>() - box.min.cast<double>()).cwiseMax(0.0);
 
   // A cell a little wider than the radius: rounding can then never put a neighbour two cells away.
   double size = static_cast<double>(cellSize) * 1.0001;
   const double most = 4.0 * static_cast<double>(n) + 4096;
-  const auto cellsAlong = [&](int axis) { return std::floor(static_cast<double>(extent[axis]) / size) + 1; };
+  const auto cellsAlong = [&](int axis) { return std::floor(extent[axis] / size) + 1; };
   while (cellsAlong(0) * cellsAlong(1) * cellsAlong(2) > most) size *= 1.5;
   inverseCell_ = static_cast<float>(1 / size);
   for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(cellsAlong(axis)) + 1;

@@ -15,8 +15,8 @@ namespace migiwa {
 /// are spread so thin that such cells would outnumber them.
 class CellGrid {
  public:
-  /// Sorts: afterwards order()[k] is the index of the particle that comes k-th along the grid. Positions must
-  /// be finite.
+  /// Sorts: afterwards order()[k] is the index of the particle that comes k-th along the grid. Particles
+  /// whose place is not finite come to lie in the cells at the edge, and are neighbours of none.
   void build(std::span<const Float4> positions, float cellSize, ThreadPool& pool);
   const std::vector<std::uint32_t>& order() const { return order_; }
 

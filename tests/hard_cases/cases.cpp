@@ -1,26 +1,17 @@
-// The table of cases. Bounds are what mechanics says of the scene; where a case gains energy, `energyFrom`
-// says where from. g a, the unit of those gains, is the work of lifting water by one spacing: 0.49 J/kg at
-// 0.05 m.
+// The table of cases. Bounds are what mechanics says of the scene; that of the energy follows from the start.
+#include <cstdlib>
+
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {
 
 namespace {
 
-/// A lattice between walls reads some percent too dense, and swells in the first steps.
-const char* const kSwells = "start: the lattice between walls reads up to 5 % too dense, and swells";
-
 HardCase timed(const std::string& scene, double until, double speed) {
   HardCase hardCase;
   hardCase.name = hardCase.scene = scene;
   hardCase.until = until;
   hardCase.speed = speed;
-  return hardCase;
-}
-
-HardCase swelling(HardCase hardCase, double energy) {
-  hardCase.energy = energy;
-  hardCase.energyFrom = kSwells;
   return hardCase;
 }
 
@@ -48,8 +39,6 @@ HardCase coincident(int particles, double until) {
   HardCase hardCase = guarded(timed("coincident", until, 0.5), "started_crowded");
   hardCase.name = "coincident_" + std::to_string(particles);
   hardCase.copies = particles / 2;
-  hardCase.energy = 0.01;
-  hardCase.energyFrom = "start: density errors up to 4 % are left";
   return hardCase;
 }
 
@@ -63,34 +52,32 @@ void addImpacts(std::vector<HardCase>& cases) {
 
 void addGaps(std::vector<HardCase>& cases) {
   // The head of 0.8 m falls to the floor at 4 m/s at most; a jet through the slit may be twice as fast.
-  cases.push_back(resting(swelling(timed("gap_2", 1.5, 8), 0.3), 0.15));
-  cases.push_back(swelling(timed("gap_1", 1.5, 8), 0.3));
-  cases.push_back(swelling(timed("gap_0.5", 1.5, 8), 0.3));
+  cases.push_back(resting(timed("gap_2", 1.5, 8), 0.15));
+  cases.push_back(timed("gap_1", 1.5, 8));
+  cases.push_back(timed("gap_0.5", 1.5, 8));
   // Narrower than a particle: nothing is ever below the blocks' upper faces.
   for (const char* scene : {"gap_0.1", "gap_0.02"})
-    cases.push_back(above(resting(swelling(timed(scene, 1.5, 8), 0.3), 0.15), 0.4));
+    cases.push_back(above(resting(timed(scene, 1.5, 8), 0.15), 0.4));
   for (const char* scene : {"plate_1", "plate_0.25", "plate_0.05"})
-    cases.push_back(resting(swelling(timed(scene, 1, 3.2), 0.25), 0.15));
+    cases.push_back(resting(timed(scene, 1, 3.2), 0.15));
 }
 
 void addSolverCases(std::vector<HardCase>& cases) {
   // 0.4 m of water: twice the speed of its fall, 2.8 m/s.
   constexpr double kSpeed = 5.6;
-  cases.push_back(everyMethod(swelling(timed("dam", 1, kSpeed), 0.05)));
+  cases.push_back(everyMethod(timed("dam", 1, kSpeed)));
   for (const char* scene : {"time_step_x3", "time_step_x10", "time_step_x100", "fixed_step_x3",
                             "fixed_step_x10", "fixed_step_x100"})
     cases.push_back(timed(scene, 1, kSpeed));
   cases.push_back(guarded(timed("one_iteration", 1, kSpeed), "not_converged"));
-  cases.push_back(guarded(swelling(timed("tolerance_0", 1, kSpeed), 0.25), "not_converged"));
-  HardCase column = guarded(swelling(timed("column", 1, 14), 4), "not_converged");
-  column.energyFrom = "start: three particles between walls read too dense, and 10 m of them rise by 0.4 m";
+  cases.push_back(guarded(timed("tolerance_0", 1, kSpeed), "not_converged"));
+  HardCase column = guarded(timed("column", 1, 14), "not_converged");
   cases.push_back(column);
   // The same at other scales: speeds and energies go with the spacing.
   cases.push_back(timed("spacing_tiny", 0.0045, 0.025));
-  cases.push_back(swelling(timed("spacing_huge", 141, 800), 0.1 * 9.81 * 1000));
-  cases.push_back(swelling(timed("far_origin", 2, 2 * kSpeed), 0.1 * 9.81 * 0.2));
-  for (const char* scene : {"gravity_0", "gravity_0.001"})
-    cases.push_back(swelling(timed(scene, 1, 1), 0.05));
+  cases.push_back(timed("spacing_huge", 141, 800));
+  cases.push_back(timed("far_origin", 2, 2 * kSpeed));
+  for (const char* scene : {"gravity_0", "gravity_0.001"}) cases.push_back(timed(scene, 1, 1));
   cases.push_back(resting(timed("gravity_1000", 1, 56), 0.1));
 }
 
@@ -101,6 +88,7 @@ std::vector<HardCase> hardCases() {
   cases.push_back(timed("coincident", 1, 0));
   cases.push_back(coincident(100, 0.5));
   cases.push_back(coincident(2000, 0.1));
+  cases.push_back(coincident(8000, 0.025));
   for (const char* scene : {"lone_corner", "lone_edge", "lone_wedge"})
     cases.push_back(everyMethod(resting(timed(scene, 1, 4.5), 1e-3)));
   addImpacts(cases);
@@ -111,7 +99,9 @@ std::vector<HardCase> hardCases() {
   addSolverCases(cases);
   for (const char* scene : {"particles_0", "particles_1", "particles_2", "particles_3"})
     cases.push_back(everyMethod(resting(timed(scene, 1, 3.5), 1e-3)));
-  cases.push_back(swelling(timed("one_kilometre", 0.5, 10), 0.05));
+  // 20,000 steps, or a million in the soak.
+  cases.push_back(resting(timed("rest", std::getenv("MIGIWA_SOAK") != nullptr ? 5000 : 100, 1), 0.02));
+  cases.push_back(timed("one_kilometre", 0.5, 10));
   return cases;
 }
 

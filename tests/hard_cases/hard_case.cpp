@@ -11,24 +11,29 @@ namespace migiwa::testing {
 
 namespace {
 
-struct Mechanics {
-  double energy = 0;  ///< (J/kg)
-  double maxSpeed = 0;
-  Vec3d momentum = Vec3d::Zero();  ///< per mass (m/s)
+/// Of all particles, over the mass.
+Vec3d momentumOf(const FrameView& view) {
+  Vec3d sum = Vec3d::Zero();
+  for (const Float4& v : view.velocities) sum += v.xyz().cast<double>();
+  return sum / std::max<double>(1, static_cast<double>(view.velocities.size()));
+}
+
+struct Start {
+  double density = 0;  ///< largest density error
+  double height = 0;   ///< of the fluid along gravity (m)
 };
 
-/// Heights count from `origin`, so that no digits are lost far from that of the scene.
-Mechanics mechanicsOf(const FrameView& view, const Vec3d& gravity, const Vec3d& origin) {
-  Mechanics sum;
+Start startOf(const FrameView& view, const Vec3d& gravity) {
+  Start start;
+  const Vec3d up = gravity.norm() > 0 ? Vec3d(-gravity.normalized()) : Vec3d(Vec3d::Zero());
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (std::size_t i = 0; i < view.positions.size(); ++i) {
-    const Vec3d x = view.positions[i].xyz().cast<double>(), v = view.velocities[i].xyz().cast<double>();
-    sum.energy += 0.5 * v.squaredNorm() - gravity.dot(x - origin);
-    sum.momentum += v;
-    sum.maxSpeed = std::max(sum.maxSpeed, v.norm());
+    const double height = up.dot(view.positions[i].xyz().cast<double>());
+    lowest = std::min(lowest, height), highest = std::max(highest, height);
+    start.density = std::max(start.density, static_cast<double>(view.density[i]) - 1);
   }
-  const double n = std::max<double>(1, static_cast<double>(view.positions.size()));
-  sum.energy /= n, sum.momentum /= n;
-  return sum;
+  if (!view.positions.empty()) start.height = highest - lowest;
+  return start;
 }
 
 void watchWalls(const Boundary& boundary, const Scene& scene, const FrameView& view, Observed& seen) {
@@ -56,26 +61,31 @@ Scene sceneOf(const HardCase& hardCase, const std::string& method) {
 Observed observe(const Scene& scene, double until, int threads) {
   Simulation simulation(scene, threads);
   const Boundary boundary(scene.surfaces);
-  const Vec3d origin = scene.fluid.empty() ? Vec3d::Zero() : scene.fluid.front()->bounds().center();
   Observed seen;
-  const Mechanics start = mechanicsOf(simulation.view(), scene.gravity, origin);
+  const Start start = startOf(simulation.view(), scene.gravity);
+  const Vec3d momentum = momentumOf(simulation.view());
   watchWalls(boundary, scene, simulation.view(), seen);
   const long last = simulation.frameAt(until);
   while (simulation.frame() < last && !simulation.stopped()) {
     simulation.advanceFrame();
     const FrameView view = simulation.view();
-    const Mechanics now = mechanicsOf(view, scene.gravity, origin);
-    seen.energyGain = std::max(seen.energyGain, now.energy - start.energy);
-    seen.momentum = (now.momentum - start.momentum - simulation.time() * scene.gravity).norm();
+    seen.momentum = (momentumOf(view) - momentum - simulation.time() * scene.gravity).norm();
     watchWalls(boundary, scene, view, seen);
   }
   const RunStatistics& run = simulation.statistics();
-  // The symplectic Euler step keeps E + dt g.v / 2 where a particle flies free, not E itself: from falling to
-  // rising at the speed v it gains dt g v.
+  seen.energyGain = run.energy.mostGained;
+  // A step of its first length undoes what is too dense at the start, and water that swells by so much lifts
+  // itself. What flies is exact; what touches a wall may gain the speed that gravity gives in one step.
   const double dt =
-      run.steps > 0 ? simulation.time() / static_cast<double>(simulation.frame()) : scene.solver.timeStep;
-  seen.allowance =
-      dt * scene.gravity.norm() * std::min(run.maxSpeed, std::sqrt(2 * std::max(start.energy, 0.0)) + 1);
+      run.steps > 0 ? simulation.time() / static_cast<double>(run.steps) : scene.solver.timeStep;
+  const double gravity = scene.gravity.norm();
+  // Velocities are differences of positions, which are rounded: an error a step that does not know of others.
+  const Bounds bounds = scene.bounds();
+  const double farthest = bounds.empty() ? 0 : bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).norm();
+  const double rounding = 0x1p-24 * farthest / dt * run.maxSpeed * std::sqrt(static_cast<double>(run.steps));
+  seen.energyBound = 2 * run.energy.stored + 0.5 * start.density * gravity * start.height +
+                     0.5 * (gravity * dt) * (gravity * dt) + rounding;
+  seen.energyWork = run.energy.walls + run.energy.emitters;
   seen.maxSpeed = run.maxSpeed;
   seen.penetration = run.maxPenetration;
   seen.lost = run.lostParticles, seen.nonfinite = run.nonfiniteParticles;
@@ -105,7 +115,7 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
   most("particles that are not finite", static_cast<double>(seen.nonfinite), 0);
   most("lost particles", static_cast<double>(seen.lost), 0);
   most("penetration (m)", seen.penetration, 0);
-  most("energy gained (J/kg)", seen.energyGain, expected.energy + seen.allowance);
+  most("energy gained (J/kg)", seen.energyGain, seen.energyBound);
   most("speed (m/s)", seen.maxSpeed, expected.speed);
   most("mean density error at the end", seen.meanError, expected.meanError);
   most("largest density error", seen.worstError, expected.worstError);

@@ -1,6 +1,9 @@
 // Every case of hardCases() keeps what it states, with the same bits for any number of threads.
 #include "tests/hard_cases/hard_case.h"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -46,6 +49,31 @@ std::vector<HardCase> casesOfEveryMethod() {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryMethod, ::testing::ValuesIn(casesOfEveryMethod()),
                          [](const auto& one) { return testName(one.param); });
+
+/// In the soak alone: the same bits with any number of threads, and no method of gamma that loses a particle
+/// or leaves what is finite.
+class Soak : public ::testing::TestWithParam<HardCase> {};
+
+TEST_P(Soak, HoldsWithEveryMethodAndThreadCount) {
+  const double until = std::min(GetParam().until, 5.0);
+  const std::uint64_t hash = observe(sceneOf(GetParam()), until, 1).hash;
+  for (const int threads : {2, 5, 16, 64})
+    EXPECT_EQ(observe(sceneOf(GetParam()), until, threads).hash, hash) << threads << " threads";
+  for (const std::string method : {"mean", "nearest", "product", "copula", "directions", "baked"}) {
+    SCOPED_TRACE(method);
+    const Observed seen = observe(sceneOf(GetParam(), method), until, 1);
+    EXPECT_EQ(seen.nonfinite, 0);
+    EXPECT_EQ(seen.lost, 0);
+    EXPECT_LE(seen.energyGain, seen.energyBound);
+  }
+}
+
+std::vector<HardCase> soakCases() {
+  return std::getenv("MIGIWA_SOAK") != nullptr ? hardCases() : std::vector<HardCase>();
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Soak, ::testing::ValuesIn(soakCases()),
+                         [](const auto& one) { return testName(one.param); });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Soak);
 
 }  // namespace
 }  // namespace migiwa::testing

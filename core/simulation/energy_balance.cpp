@@ -1,0 +1,68 @@
+#include "core/simulation/energy_balance.h"
+
+#include <algorithm>
+
+#include "core/simulation/state_visitor.h"
+#include "core/solver/step_state.h"
+
+namespace migiwa {
+
+double storedEnergy(const StepState& state, double dt) {
+  if (state.errors.empty() || dt <= 0) return 0;
+  const double way2 = state.errors.back().meanSquare * static_cast<double>(state.supportRadius) *
+                      static_cast<double>(state.supportRadius) /
+                      static_cast<double>(state.lattice.squaredGradients);
+  return 0.5 * way2 / (dt * dt);
+}
+
+void EnergyBalance::begin(const EnergySums& sums, const StepState& state) {
+  kinetic = sums.kinetic;
+  potential = sums.potential(state.gravity.cast<double>());
+  start = kinetic + potential;
+  sample(0, sums.particles);
+}
+
+void EnergyBalance::record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
+                           double time) {
+  const Vec3d gravity = state.gravity.cast<double>();
+  const double byWalls = state.wallWork.sum() / dt;
+  kinetic = now.kinetic;
+  potential = now.potential(gravity);
+  walls += byWalls;
+  effects += state.effectWork;
+  solver += now.halfStepOn(gravity, dt) - before.halfStepOn(gravity, dt) - byWalls - state.effectWork;
+  if (now.particles > 0) mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
+  sample(time, now.particles);
+}
+
+void EnergyBalance::sample(double time, long particles) {
+  if (untilSample_-- > 0) return;
+  if (history.size() == kMostSamples) {
+    // Twice as far apart from now on: every second one stays.
+    for (std::size_t k = 0; 2 * k < history.size(); ++k) history[k] = history[2 * k];
+    history.resize(kMostSamples / 2);
+    stride_ *= 2;
+  }
+  untilSample_ = stride_ - 1;
+  const double share = particles > 0 ? 1 / static_cast<double>(particles) : 0;
+  history.push_back({time, kinetic * share, potential * share, (start + walls + emitters + effects) * share});
+}
+
+void EnergyBalance::visit(StateVisitor& visitor) {
+  visitor.number("/energy/start", start);
+  visitor.number("/energy/kinetic", kinetic);
+  visitor.number("/energy/potential", potential);
+  visitor.number("/energy/walls", walls);
+  visitor.number("/energy/emitters", emitters);
+  visitor.number("/energy/effects", effects);
+  visitor.number("/energy/solver", solver);
+  visitor.number("/energy/most_gained", mostGained);
+  visitor.number("/energy/stored", stored);
+  std::int64_t stride = stride_, until = untilSample_;
+  visitor.integer("/energy/stride", stride);
+  visitor.integer("/energy/until_sample", until);
+  stride_ = stride, untilSample_ = until;
+  visitor.array("energy/history", history);
+}
+
+}  // namespace migiwa

@@ -1,0 +1,87 @@
+#include "core/solver/energy.h"
+
+#include "core/solver/step_state.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr auto kSum = [](double a, double b) { return a + b; };
+
+/// Sum of term(i) over the particles.
+template <class Term>
+double sumOver(const StepState& state, std::size_t count, const Term& term) {
+  return parallelReduce(
+      state.pool, count, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += term(i);
+        return sum;
+      },
+      kSum);
+}
+
+}  // namespace
+
+void EnergySums::add(const Vec3f& position, const Vec3f& velocityOfParticle, const Vec3f& centre) {
+  kinetic += 0.5 * static_cast<double>(velocityOfParticle.squaredNorm());
+  velocity += velocityOfParticle.cast<double>();
+  place += Vec3f(position - centre).cast<double>();
+  ++particles;
+}
+
+EnergySums& EnergySums::operator+=(const EnergySums& other) {
+  kinetic += other.kinetic;
+  velocity += other.velocity;
+  place += other.place;
+  particles += other.particles;
+  return *this;
+}
+
+double EnergySums::halfStepOn(const Vec3d& gravity, double dt) const {
+  return kinetic + 0.5 * dt * gravity.dot(velocity) +
+         0.125 * dt * dt * gravity.squaredNorm() * static_cast<double>(particles) + potential(gravity);
+}
+
+EnergySums energySums(const Particles& particles, std::size_t first, const Vec3f& centre) {
+  EnergySums sums;
+  for (std::size_t i = first; i < particles.size(); ++i)
+    sums.add(particles.position[i].xyz(), particles.velocity[i].xyz(), centre);
+  return sums;
+}
+
+double predictedEnergy(const StepState& state) {
+  // 1/2 |d/dt + g dt/2|^2 - g.d = 1/2 |d/dt|^2 - 1/2 g.d and a constant, d the move of the step.
+  const float inverseStep = 1 / state.timeStep;
+  return sumOver(state, state.particles.size(), [&](std::size_t i) {
+    const Vec3f move = state.current[i].xyz() - state.particles.position[i].xyz();
+    return 0.5 * static_cast<double>((inverseStep * move).squaredNorm() - state.gravity.dot(move));
+  });
+}
+
+double velocityEnergy(const StepState& state) {
+  const Vec3f gain = state.timeStep * state.gravity;
+  return sumOver(state, state.particles.size(), [&](std::size_t i) {
+    const Vec3f velocity = state.particles.velocity[i].xyz();
+    return 0.5 * static_cast<double>(velocity.squaredNorm() + gain.dot(velocity));
+  });
+}
+
+void WallWork::iterate(double displacementTimesVelocity, float weight) {
+  const double stretch = static_cast<double>(weight);
+  const double next = before_ + stretch * (now_ + displacementTimesVelocity - before_);
+  before_ = now_;
+  now_ = next;
+}
+
+double wallPush(const StepState& state) {
+  if (state.parameters.positionStep == PositionStep::paper) return 0;
+  return sumOver(state, state.wallSlots.size(), [&](std::size_t k) {
+    const WallSlot& slot = state.wallSlots[k];
+    const std::size_t i = slot.particle;
+    const Vec3f push = -state.supportRadius * state.wallPush(i) * slot.sample.pairGradient;
+    return static_cast<double>(push.dot(state.boundary.wallVelocity(state.current[i].xyz())));
+  });
+}
+
+}  // namespace migiwa

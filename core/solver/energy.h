@@ -1,0 +1,60 @@
+// What the energy of the fluid is and who gives it any, so that "energy never grows without a source" can be
+// checked of every step. Energies are sums over the particles of what each has over its mass (m^2/s^2).
+//
+// The step is symplectic Euler, whose velocities belong to the middle of the step that made them. With the
+// velocity half a step on, v + g dt/2, a particle that flies free keeps its energy exactly, whatever the
+// step:
+//   H = sum 1/2 |v + g dt/2|^2 - g.x
+// so what is left of a change of H is the doing of the solver, of moving walls and of effects.
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/types.h"
+
+namespace migiwa {
+
+struct Particles;
+struct StepState;
+
+/// Sums over particles that the energy follows from, for any gravity and any step.
+struct EnergySums {
+  double kinetic = 0;              ///< of |v|^2/2 (m^2/s^2)
+  Vec3d velocity = Vec3d::Zero();  ///< of v (m/s)
+  Vec3d place = Vec3d::Zero();     ///< of x, counted from the scene's centre so that no digits are lost (m)
+  long particles = 0;
+
+  void add(const Vec3f& position, const Vec3f& velocityOfParticle, const Vec3f& centre);
+  EnergySums& operator+=(const EnergySums& other);
+  double potential(const Vec3d& gravity) const { return -gravity.dot(place); }
+  /// H for a step of `dt` (s).
+  double halfStepOn(const Vec3d& gravity, double dt) const;
+};
+
+/// Of the particles from `first` on.
+EnergySums energySums(const Particles& particles, std::size_t first, const Vec3f& centre);
+
+/// H, less a constant of the step, if the predicted positions were final.
+double predictedEnergy(const StepState& state);
+/// H, less the same constant, with the velocities as they are; positions play no part.
+double velocityEnergy(const StepState& state);
+
+/// Work that moving walls do in a step: their impulse on each particle times the wall's velocity there.
+/// Impulses are displacements over the step, so this sums displacement times velocity (m^2/s). A linear
+/// functional of the displacements, it takes part in the stretching of iterations as positions do.
+class WallWork {
+ public:
+  void clear() { now_ = before_ = 0; }
+  void add(double displacementTimesVelocity) { now_ += displacementTimesVelocity; }
+  /// An iteration that the walls pushed by `displacementTimesVelocity`, stretched by `weight`.
+  void iterate(double displacementTimesVelocity, float weight);
+  double sum() const { return now_; }
+
+ private:
+  double now_ = 0, before_ = 0;
+};
+
+/// What the walls' push of the last stages::movePositions adds, before it is stretched.
+double wallPush(const StepState& state);
+
+}  // namespace migiwa
