@@ -100,6 +100,27 @@ void addMesh(const fs::path& file, const aiMesh& part, const aiMatrix4x4& transf
   }
 }
 
+/// What dividing polygons takes for granted, and a broken file may not have: corners that exist, and a flag
+/// for polygons only where there are some.
+void makeConsistent(const fs::path& file, const aiScene& scene) {
+  constexpr std::array<unsigned, 5> kKinds{0, aiPrimitiveType_POINT, aiPrimitiveType_LINE,
+                                           aiPrimitiveType_TRIANGLE, aiPrimitiveType_POLYGON};
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& part = *scene.mMeshes[m];
+    part.mPrimitiveTypes = 0;
+    for (unsigned k = 0; k < part.mNumFaces; ++k) {
+      const aiFace& face = part.mFaces[k];
+      part.mPrimitiveTypes |= kKinds[std::min(face.mNumIndices, 4U)];
+      for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+        if (face.mIndices[corner] < part.mNumVertices) continue;
+        throw InputError(file.string() + ": face " + std::to_string(k),
+                         "expected vertices from 0 to " + std::to_string(part.mNumVertices) + " - 1, found " +
+                             std::to_string(face.mIndices[corner]));
+      }
+    }
+  }
+}
+
 void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
              Raw& raw) {
   const aiMatrix4x4 transform = parent * node.mTransformation;
@@ -121,7 +142,11 @@ ImportedShape importShape(const fs::path& file) {
   requireWholePly(file);
   Assimp::Importer importer;
   // Everything but positions, faces and the normals of points is left out.
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (scene != nullptr) {
+    makeConsistent(file, *scene);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw InputError(file.string(),
                      "expected a mesh (OBJ, PLY, STL, ...) or a point cloud, found a file that "
