@@ -23,13 +23,6 @@ double sumOver(const StepState& state, std::size_t count, const Term& term) {
 
 }  // namespace
 
-void EnergySums::add(const Vec3f& position, const Vec3f& velocityOfParticle, const Vec3f& centre) {
-  kinetic += 0.5 * static_cast<double>(velocityOfParticle.squaredNorm());
-  velocity += velocityOfParticle.cast<double>();
-  place += Vec3f(position - centre).cast<double>();
-  ++particles;
-}
-
 EnergySums& EnergySums::operator+=(const EnergySums& other) {
   kinetic += other.kinetic;
   velocity += other.velocity;

@@ -24,7 +24,12 @@ struct EnergySums {
   Vec3d place = Vec3d::Zero();     ///< of x, counted from the scene's centre so that no digits are lost (m)
   long particles = 0;
 
-  void add(const Vec3f& position, const Vec3f& velocityOfParticle, const Vec3f& centre);
+  void add(const Vec3f& position, const Vec3f& velocityOfParticle, const Vec3f& centre) {
+    kinetic += 0.5 * static_cast<double>(velocityOfParticle.squaredNorm());
+    velocity += velocityOfParticle.cast<double>();
+    place += Vec3f(position - centre).cast<double>();
+    ++particles;
+  }
   EnergySums& operator+=(const EnergySums& other);
   double potential(const Vec3d& gravity) const { return -gravity.dot(place); }
   /// H for a step of `dt` (s).

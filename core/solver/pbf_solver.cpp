@@ -21,10 +21,10 @@ bool endsFinite(const StepState& state) {
       state.pool, state.particles.size(), 0.0F,
       [&](std::size_t begin, std::size_t end) {
         // What is finite times zero is zero, so that no sum of large coordinates overflows.
-        float part = 0;
-        for (std::size_t i = begin; i < end; ++i)
-          part += 0 * state.current[i].x + 0 * state.current[i].y + 0 * state.current[i].z;
-        return part;
+        // Three sums, so that none waits for another.
+        Vec3f part = Vec3f::Zero();
+        for (std::size_t i = begin; i < end; ++i) part += 0 * state.current[i].xyz();
+        return part.sum();
       },
       [](float a, float b) { return a + b; });
   return sum == 0;

@@ -13,10 +13,10 @@ constexpr float kAmple = 1.001F;
 /// side. Returns how far times the velocity of the wall there (m^2/s), 0 where no wall moves.
 double project(StepState& state, std::size_t i, const Float4& from, bool stepBegan) {
   Vec3f p = state.current[i].xyz();
-  if (!p.allFinite()) return 0;  // no wall has a place for it; the step is about to be refused
   // How far it may have to be from walls for them not to be in its way.
   const float onTheWay = state.barringWalls.empty() ? 0 : kSteepestDistance * (p - from.xyz()).norm();
   if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return 0;
+  if (!p.allFinite()) return 0;  // no wall has a place for it; the step is about to be refused
   const Vec3f came = p;
   if (!state.barringWalls.empty())
     p = heldBack(state.barringWalls, from.xyz(), stepBegan, p, state.wallMargin());
