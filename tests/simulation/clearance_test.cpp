@@ -3,21 +3,19 @@
 // change faster than is reckoned with.
 #include "core/solver/clearance.h"
 
-#include <filesystem>
-
 #include <gtest/gtest.h>
 
 #include "core/boundary/gridded_surface.h"
 #include "core/boundary/polynomial.h"
 #include "core/boundary/sphere.h"
-#include "core/io/save_file.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/state_image.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
 namespace {
 
 using namespace migiwa::testing;
-namespace fs = std::filesystem;
 
 /// The box as a run has walls whose distance is costly.
 std::shared_ptr<const Surface> fromGrid(const Vec3d& min, const Vec3d& max, Box::Fluid fluid,
@@ -63,20 +61,16 @@ std::vector<Case> cases() {
 }
 
 TEST(Clearance, ForgettingItChangesNothing) {
-  const fs::path file = fs::path(::testing::TempDir()) / "migiwa_clearance.save";
   for (const Case& the : cases()) {
     Simulation straight(the.scene, 2), forgetful(the.scene, 2);
-    SettledSampler sampler;
     for (int frame = 0; frame < 60; ++frame) {
       straight.advanceFrame();
-      writeSave(file, forgetful, sampler, {});
-      readSave(file, forgetful, sampler);
+      StateImage::of(forgetful).restore(forgetful);
       forgetful.advanceFrame();
       ASSERT_EQ(straight.stateHash(), forgetful.stateHash()) << the.name << ", frame " << frame;
     }
     EXPECT_FALSE(straight.statistics().failed()) << the.name;
   }
-  fs::remove(file);
 }
 
 TEST(Clearance, NoDistanceChangesFasterThanReckonedWith) {
