@@ -1,21 +1,11 @@
 #include "app/ui/panels.h"
+#include "app/ui/settings_rows.h"
 #include "app/ui/widgets.h"
-#include "core/boundary/handling.h"
 
 namespace migiwa {
 
 void boundaryPanel(PanelModel& model) {
-  BoundaryParameters& boundary = model.settings.boundary;
-  rowLabel("Walls");
-  auto handling = static_cast<int>(boundary.handling);
-  if (choice("##handling", handling, handlingNames())) {
-    boundary.handling = static_cast<BoundaryHandling>(handling);
-    model.wishes.settings = true;
-  }
-  ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
-  rowLabel("Method of γ");
-  if (choice("##method", boundary.gammaMethod, gammaMethodNames())) model.wishes.settings = true;
-  ImGui::EndDisabled();
+  if (wallRows(model.settings.boundary)) model.wishes.settings = true;
   rowLabel("In use");
   ImGui::TextUnformatted(model.frame.handling.c_str());
 }

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "app/ui/number_text.h"
+#include "app/ui/plot_grid.h"
 #include "app/ui/theme.h"
 #include "core/study/pareto.h"
 
@@ -73,11 +74,7 @@ void costChart(std::span<const WhatIfPoint> points, float height) {
   };
   draw->AddRectFilled({left, top}, {right, bottom}, theme::kWell, 3);
   for (const double value : error.ticks()) {
-    const float y = std::round(at(cost.low, value).y);
-    draw->AddLine({left, y}, {right, y}, theme::kGridLine);
-    const std::string text = formatNumber("%g", value);
-    draw->AddText({left - 0.4F * size - ImGui::CalcTextSize(text.c_str()).x, y - 0.5F * size - 1}, faint,
-                  text.c_str());
+    gridLine(draw, left, right, std::round(at(cost.low, value).y), formatNumber("%g", value));
   }
   for (const double value : cost.ticks()) {
     const float x = std::round(at(value, error.low).x);

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "app/ui/number_text.h"
+#include "app/ui/plot_grid.h"
 #include "app/ui/theme.h"
 
 namespace migiwa {
@@ -61,11 +62,7 @@ void energyPlot(std::span<const EnergySample> samples, float height) {
   };
   draw->AddRectFilled({low.x, high.y}, {high.x, low.y}, theme::kWell, 3);
   for (const double v : ticks.values) {
-    const float y = std::round(at(0, v).y);
-    draw->AddLine({low.x, y}, {high.x, y}, theme::kGridLine);
-    const std::string text = formatNumber(format.c_str(), v);
-    draw->AddText({low.x - 0.4F * size - ImGui::CalcTextSize(text.c_str()).x, y - 0.5F * size - 1}, faint,
-                  text.c_str());
+    gridLine(draw, low.x, high.x, std::round(at(0, v).y), formatNumber(format.c_str(), v));
   }
   const std::string end = formatNumber("%.2f s", samples.back().time);
   draw->AddText({low.x, low.y + 2}, faint, "0 s");

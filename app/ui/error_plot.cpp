@@ -7,6 +7,7 @@
 #include <imgui.h>
 
 #include "app/ui/number_text.h"
+#include "app/ui/plot_grid.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
 
@@ -58,10 +59,7 @@ void errorPlot(std::span<const IterationError> errors, double tolerance, float h
   draw->AddRectFilled({plot.low.x, plot.high.y}, {plot.high.x, plot.low.y}, theme::kWell, 3);
   for (const double v : ticks.values) {
     const float y = std::round(plot.at(0, v).y);
-    draw->AddLine({plot.low.x, y}, {plot.high.x, y}, theme::kGridLine);
-    const std::string text = formatNumber(format.c_str(), v);
-    draw->AddText({plot.low.x - 0.4F * size - ImGui::CalcTextSize(text.c_str()).x, y - 0.5F * size - 1},
-                  faint, text.c_str());
+    gridLine(draw, plot.low.x, plot.high.x, y, formatNumber(format.c_str(), v));
   }
   const auto labelBelow = [&](float x, float share, const std::string& text) {
     draw->AddText({std::round(x - share * ImGui::CalcTextSize(text.c_str()).x), plot.low.y + 2}, faint,

@@ -5,36 +5,19 @@
 #include "app/ui/cost_chart.h"
 #include "app/ui/number_text.h"
 #include "app/ui/panels.h"
+#include "app/ui/settings_rows.h"
 #include "app/ui/widgets.h"
-#include "core/boundary/handling.h"
 
 namespace migiwa {
 namespace {
 
-constexpr ImGuiSliderFlags kLog = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic;
-
+/// Apart from the rows of the run's own settings, which have the same names.
 bool form(Settings& asked) {
-  bool changed = false;
-  BoundaryParameters& boundary = asked.boundary;
-  rowLabel("Walls");
-  auto handling = static_cast<int>(boundary.handling);
-  if (choice("##what_if_handling", handling, handlingNames())) {
-    boundary.handling = static_cast<BoundaryHandling>(handling);
-    changed = true;
-  }
-  ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
-  rowLabel("Method of γ");
-  changed |= choice("##what_if_method", boundary.gammaMethod, gammaMethodNames());
-  ImGui::EndDisabled();
-  rowLabel("Max iterations");
-  if (ImGui::SliderInt("##what_if_max", &asked.solver.maxIterations, 1, 100, "%d", kLog)) {
-    asked.solver.minIterations = std::min(asked.solver.minIterations, asked.solver.maxIterations);
-    changed = true;
-  }
-  rowLabel("Tolerance");
-  const double low = 0.0005, high = 0.2;
-  changed |= ImGui::SliderScalar("##what_if_tolerance", ImGuiDataType_Double, &asked.solver.tolerance, &low,
-                                 &high, "%.4f", kLog);
+  ImGui::PushID("what_if");
+  bool changed = wallRows(asked.boundary);
+  changed |= maxIterationsRow(asked.solver);
+  changed |= toleranceRow(asked.solver);
+  ImGui::PopID();
   return changed;
 }
 

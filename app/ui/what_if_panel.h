@@ -12,7 +12,7 @@ namespace migiwa {
 
 /// One setting that was tried.
 struct WhatIfPoint {
-  std::string label;  ///< such as "γ auto, at most 10 iterations, tolerance 0.01"
+  std::string label;  ///< such as "gamma: product, at most 10 iterations, tolerance 0.01"
   double milliseconds = 0;
   double iterations = 0;
   std::optional<double> densityError, gammaError;  ///< against the reference, mean

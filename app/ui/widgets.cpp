@@ -35,6 +35,10 @@ bool choice(const char* id, int& index, std::span<const std::string_view> names)
   return changed;
 }
 
+bool logSlider(const char* id, double& value, double low, double high, const char* format) {
+  return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format, kLogSlider);
+}
+
 void faintText(std::string_view text) {
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
   ImGui::TextUnformatted(text.data(), text.data() + text.size());

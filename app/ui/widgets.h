@@ -15,6 +15,9 @@ std::string titleOf(std::string_view key);
 void rowLabel(const char* label);
 /// A drop-down list over names; returns whether `index` changed.
 bool choice(const char* id, int& index, std::span<const std::string_view> names);
+/// What sliders of numbers have that span powers of ten.
+constexpr ImGuiSliderFlags kLogSlider = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic;
+bool logSlider(const char* id, double& value, double low, double high, const char* format);
 /// Text in the panels' fainter colour.
 void faintText(std::string_view text);
 /// `count` buttons side by side: the width of each.

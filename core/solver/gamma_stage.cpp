@@ -57,13 +57,6 @@ bool carryAlong(const StepState& state, const Vec3f& p, WallSlot& slot) {
   return true;
 }
 
-/// The clearance (m) of a particle that has no wall slot yet.
-float clearanceOnTheWay(const StepState& state, std::size_t i) {
-  if (!state.boundary.steady()) return 0;
-  const Float4& start = state.particles.position[i];
-  return clearanceAt(state.current[i].xyz(), start.xyz(), start.w);
-}
-
 /// Has the particle know at the place where its step began what was measured on the way.
 void remember(StepState& state, const WallSlot& slot) {
   if (!state.boundary.steady()) return;
@@ -113,7 +106,7 @@ void evaluateGamma(StepState& state) {
           continue;
         }
       }
-      if (clearanceOnTheWay(state, i) < watchReach) fresh.push_back({particle, Float4(p), {}});
+      if (knownClearance(state, i, p) < watchReach) fresh.push_back({particle, Float4(p), {}});
     }
     evaluate(state, fresh);
     for (const WallSlot& slot : fresh) remember(state, slot);

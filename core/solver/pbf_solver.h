@@ -12,8 +12,8 @@
 namespace migiwa {
 
 /// Advances the state by `state.timeStep`, with what the effects add. Where a particle would end at a place
-/// that is not finite the step is refused: returns false, and positions and velocities are those of before,
-/// in another order.
+/// that is not finite the step is refused: returns false, and positions and velocities are those of before
+/// (velocities but for rounding, gravity's gain having been added and taken back), in another order.
 bool advanceStep(StepState& state, EffectPipeline& effects);
 
 /// What of a refused step was not finite first.
