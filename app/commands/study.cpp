@@ -11,6 +11,7 @@
 #include "app/commands/study_convergence.h"
 #include "app/commands/study_job.h"
 #include "app/commands/study_plot.h"
+#include "app/commands/study_profiles.h"
 #include "app/commands/study_summary.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -166,6 +167,7 @@ class Study {
     for (std::size_t k = 1; k < measures.size(); ++k)
       plotStudy(job_.folder / (measures[k].column + ".png"), job_.plan, runs, measures[k]);
     plotConvergence(job_.folder, job_.plan, runs);
+    plotProfiles(job_.folder, job_.plan, runs);
     std::cout << summary << "\nWritten to " << job_.folder.string()
               << ": study.csv, summary.md, cost_accuracy.png and a picture for each measure\n";
     int code = kDone;

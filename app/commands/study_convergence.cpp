@@ -7,7 +7,6 @@
 
 #include "app/commands/gnuplot.h"
 #include "app/commands/study_drawing.h"
-#include "app/commands/study_plot.h"
 #include "app/commands/study_summary.h"
 #include "core/study/convergence.h"
 
@@ -26,7 +25,9 @@ std::string orderText(const std::optional<double>& order) {
 std::vector<AccuracyMeasure> shownMeasures(const std::vector<FinishedRun>& runs) {
   std::vector<AccuracyMeasure> shown;
   for (const AccuracyMeasure& measure : accuracyMeasures()) {
-    if (measure.column != "density_error_mean" && measure.column != "height_error") continue;
+    if (measure.column != "density_error_mean" && measure.column != "height_error" &&
+        measure.column != "wall_error")
+      continue;
     if (std::any_of(runs.begin(), runs.end(), [&](const FinishedRun& run) {
           const std::optional<double> error = measure.error(run.record);
           return error && *error > 0;
@@ -77,7 +78,7 @@ void plotConvergence(const std::filesystem::path& folder, const StudyPlan& plan,
   const std::vector<AccuracyMeasure> measures = shownMeasures(runs);
   if (measures.empty()) return;
   for (const std::size_t axis : convergenceAxes(plan)) {
-    const std::string name = shortName(plan.axes[axis].pointer);
+    const std::string name = plan.axes[axis].name();
     std::ostringstream data, plot;
     // The second line of the label keeps the key off it.
     plot << "set logscale xy\nset format y '%.3g'\nset xlabel \"" << name
@@ -99,7 +100,7 @@ std::string convergenceSummary(const StudyPlan& plan, const std::vector<Finished
   const std::vector<AccuracyMeasure> measures = shownMeasures(runs);
   for (const std::size_t axis : convergenceAxes(plan)) {
     if (measures.empty()) break;
-    out << "\n## Orders in " << shortName(plan.axes[axis].pointer)
+    out << "\n## Orders in " << plan.axes[axis].name()
         << "\n\nThe power of it that an error follows, by least squares of the logarithms.\n\n| runs |";
     for (const AccuracyMeasure& measure : measures) out << ' ' << tableCell(measure.title) << " |";
     out << "\n|---|" << (measures.size() > 1 ? "---|---|" : "---|") << '\n';

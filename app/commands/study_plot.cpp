@@ -50,7 +50,7 @@ std::vector<Line> linesOf(const StudyPlan& plan, const std::vector<FinishedRun>&
   const bool single = plan.axes.size() == 1 && isNumeric(first);
   std::vector<Line> lines(single ? 1 : first.values.size());
   for (std::size_t k = 0; k < lines.size(); ++k)
-    lines[k].label = single ? shortName(first.pointer) : first.label(first.values[k]);
+    lines[k].label = single ? first.name() : first.label(first.values[k]);
   for (const FinishedRun& run : runs) {
     const std::optional<double> error = measure.error(run.record);
     if (!error || *error <= 0) continue;
@@ -92,10 +92,6 @@ std::string labels(const std::vector<Line>& lines, const LogAxis& x, const LogAx
 
 }  // namespace
 
-std::string shortName(const std::string& pointer) {
-  return pointer.substr(pointer.rfind('/') + 1);
-}
-
 bool plotStudy(const std::filesystem::path& png, const StudyPlan& plan, const std::vector<FinishedRun>& runs,
                const AccuracyMeasure& measure) {
   const std::vector<Line> lines = linesOf(plan, runs, measure);
@@ -127,7 +123,7 @@ bool plotStudy(const std::filesystem::path& png, const StudyPlan& plan, const st
   block("front", front);
 
   std::string varied;
-  for (const StudyAxis& axis : plan.axes) varied += (varied.empty() ? "" : ", ") + shortName(axis.pointer);
+  for (const StudyAxis& axis : plan.axes) varied += (varied.empty() ? "" : ", ") + axis.name();
   std::ostringstream title;
   title << "What accuracy costs: " << plan.scene.stem().string() << ", " << plan.until << " s, by " << varied;
   if (shown < runs.size())

@@ -10,9 +10,6 @@
 
 namespace migiwa {
 
-/// Last token of a pointer: what people call the value.
-std::string shortName(const std::string& pointer);
-
 /// One measure over the wall time a simulated second, both logarithmic: a line for each value of the first
 /// varied pointer, the Pareto front marked. Runs without the measure, and those with an error of exactly 0,
 /// have no place there; how many is said below the title. Throws MissingError without gnuplot. Draws nothing

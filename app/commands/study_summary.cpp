@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <sstream>
 
-#include "app/commands/study_plot.h"
 
 namespace migiwa {
 
@@ -19,7 +18,7 @@ std::string digits(double value, const char* format = "%.3g") {
 std::string nameOf(const StudyPlan& plan, const FinishedRun& run) {
   std::string name;
   for (std::size_t k = 0; k < plan.axes.size(); ++k)
-    name += (k > 0 ? ", " : "") + shortName(plan.axes[k].pointer) + " " + plan.axes[k].label(run.values[k]);
+    name += (k > 0 ? ", " : "") + plan.axes[k].name() + " " + plan.axes[k].label(run.values[k]);
   return name;
 }
 
@@ -61,10 +60,12 @@ void describeFront(std::ostream& out, const StudyPlan& plan, const std::vector<F
   } else {
     out << " No run is cheaper.";
   }
-  out << "\n\n| on the front | ms a simulated second | " << tableCell(measure.title) << " |\n|---|---|---|\n";
+  out << "\n\n| on the front | ms a simulated second | ms once | " << tableCell(measure.title)
+      << " |\n|---|---|---|---|\n";
   for (const std::size_t at : front)
     out << "| run " << runs[at].run << ": " << nameOf(plan, runs[at]) << " | " << digits(cost(at), "%.0f")
-        << " | " << digits(error(at)) << unit << " |\n";
+        << " | " << digits(runs[at].record.measure("precomputation_ms").value_or(0), "%.0f") << " | "
+        << digits(error(at)) << unit << " |\n";
 }
 
 }  // namespace
@@ -92,7 +93,9 @@ std::string studySummary(const StudyPlan& plan, const std::vector<FinishedRun>& 
       << " %; where that is much, the machine was busy, and runs of nearly the same time may change places "
          "on "
          "the front. Errors of gamma and of the density are judged by the same reference for all runs "
-         "(directions, 16384).\n";
+         "(directions, 16384). What is made once (fits, grids, filling) is not in these times; \"ms once\" "
+         "has it, "
+         "as if for the first time.\n";
   for (const FinishedRun& run : runs)
     if (!run.record.trouble.empty())
       out << "\nRun " << run.run << " (" << nameOf(plan, run)

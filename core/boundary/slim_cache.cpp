@@ -4,8 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <unistd.h>
-
+#include "core/base/disk_cache.h"
 #include "core/base/error.h"
 #include "core/slim/slim_file.h"
 
@@ -81,6 +80,7 @@ fs::path slimFitFile(const fs::path& folder, const std::string& key) {
 }
 
 std::optional<SlimFit> readSlimFit(const fs::path& file, const std::string& key) {
+  if (MadeAnew::active()) return std::nullopt;
   const std::optional<std::string> text = contentOf(file);
   if (!text) return std::nullopt;
   // Magic and version, key, size and checksum: three lines, the rest is the body.
@@ -107,21 +107,10 @@ std::optional<SlimFit> readSlimFit(const fs::path& file, const std::string& key)
 }
 
 bool writeSlimFit(const fs::path& file, const std::string& key, const SlimFit& fit) {
-  std::error_code code;
-  fs::create_directories(file.parent_path(), code);
   std::string body;
   for (const std::string& note : fit.notes) body += "note " + note + "\n";
   body += slimFileText(fit.data);
-  // Under a name of this process alone: two that start at once do not write into each other's.
-  fs::path temporary = file;
-  temporary += "." + std::to_string(getpid()) + ".tmp";
-  std::ofstream out(temporary, std::ios::binary);
-  out << header(key, body) << body;
-  out.close();
-  if (out) fs::rename(temporary, file, code);
-  if (out && !code) return true;
-  fs::remove(temporary, code);
-  return false;
+  return writeCacheFile(file, [&](std::ostream& out) { out << header(key, body) << body; });
 }
 
 }  // namespace migiwa

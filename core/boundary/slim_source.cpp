@@ -4,7 +4,7 @@
 #include <mutex>
 #include <optional>
 
-#include "core/boundary/gamma/grid_cache.h"
+#include "core/base/disk_cache.h"
 #include "core/boundary/slim_cache.h"
 #include "core/slim/slim_file.h"
 #include "core/slim/slim_rays.h"
@@ -15,8 +15,18 @@ namespace {
 
 /// A bowl's points: enough for a few thousand nodes.
 constexpr std::size_t kBowlPoints = 200000;
+/// Others, to judge it by.
+constexpr std::size_t kJudgedBowlPoints = 100000;
 /// Fits that are kept.
 constexpr std::size_t kMostKept = 4;
+
+/// Many points on a bowl, in its place.
+OrientedPoints placedBowl(const SlimSource& source, std::size_t count) {
+  OrientedPoints points = bowlPoints(source.bowl, count);
+  for (OrientedPoint& point : points.points)
+    point = {source.transform.point(point.position), source.transform.direction(point.normal)};
+  return points;
+}
 
 /// Fits to what the source names, unless an earlier run has left the same fit behind.
 SlimFit fitOf(const SlimSource& source, ThreadPool& pool) {
@@ -28,9 +38,7 @@ SlimFit fitOf(const SlimSource& source, ThreadPool& pool) {
   SlimFit fit;
   OrientedPoints points;
   if (source.kind == SlimSource::Kind::bowl) {
-    points = bowlPoints(source.bowl, kBowlPoints);
-    for (OrientedPoint& point : points.points)
-      point = {source.transform.point(point.position), source.transform.direction(point.normal)};
+    points = placedBowl(source, kBowlPoints);
   } else {
     ImportedShape shape = importShape(source.file);
     transformShape(shape, source.transform);
@@ -110,6 +118,16 @@ bool SlimSource::operator==(const SlimSource& other) const {
          tolerance == other.tolerance && nodes == other.nodes && transform == other.transform;
 }
 
+std::optional<double> slimFitError(const SlimSource& source, const SlimModel& model) {
+  if (source.kind == SlimSource::Kind::slimFile) return std::nullopt;
+  ThreadPool pool(0);
+  if (source.kind == SlimSource::Kind::bowl)
+    return measureSlim(model, placedBowl(source, kJudgedBowlPoints).points, pool).mean;
+  ImportedShape shape = importShape(source.file);
+  transformShape(shape, source.transform);
+  return measureSlim(model, shape, pool).mean;
+}
+
 std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {
   // The only state that outlives a scene: comparisons and restarts read the same scene again and again, and a
   // fit takes seconds. Fits do not depend on when and where they are made, so nobody sees a difference.
@@ -117,8 +135,9 @@ std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {
   static std::deque<Kept> kept;
   const FileStamp stamp = stampOf(source);
   const std::lock_guard lock(mutex);
-  for (const Kept& known : kept)
-    if (known.source == source && known.stamp == stamp) return known.data;
+  if (!MadeAnew::active())
+    for (const Kept& known : kept)
+      if (known.source == source && known.stamp == stamp) return known.data;
   kept.push_front({source, stamp, prepare(source)});
   if (kept.size() > kMostKept) kept.pop_back();
   return kept.front().data;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ struct SlimWallData {
   mutable std::once_flag extracted_;
   mutable SlimMesh mesh_;
 };
+
+/// Mean distance (m) of a model from the shape that it was fitted to, at points that the fit has not seen;
+/// null for a file of ours, which no longer has its shape.
+std::optional<double> slimFitError(const SlimSource& source, const SlimModel& model);
 
 /// Reads, fits and prepares; throws InputError when the file does not allow it.
 std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source);

@@ -68,6 +68,10 @@ class Surface {
   /// The shape itself where this one stands for it with approximate distances; null where it is exact.
   virtual std::shared_ptr<const Surface> exact() const { return nullptr; }
 
+  /// Mean distance (m) of the wall from the shape that it was fitted to; null where it is what it says, or
+  /// that shape is not at hand. Reads the shape anew.
+  virtual std::optional<double> fitError() const { return std::nullopt; }
+
   /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where
   /// two of its walls leave no room. Returns whether p moved.
   virtual bool project(Vec3f& p, float margin) const = 0;

@@ -11,6 +11,7 @@ void FrameSnapshot::assign(const FrameView& view) {
   density.assign(view.density.begin(), view.density.end());
   gamma.assign(view.gamma.begin(), view.gamma.end());
   lambda.assign(view.lambda.begin(), view.lambda.end());
+  pressure.assign(view.pressure.begin(), view.pressure.end());
   neighbours.assign(view.neighbours.begin(), view.neighbours.end());
   walls = view.walls;
 }

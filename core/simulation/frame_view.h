@@ -39,6 +39,7 @@ struct FrameView {
   std::span<const float> gamma;
   std::span<const float> lambda;  ///< of the last iteration, times the squared support radius (1)
   std::span<const std::uint32_t> neighbours;
+  std::span<const float> pressure{};     ///< of the last step (Pa); empty unless Simulation::watchPressure()
   std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame; empty in a snapshot
   /// For pictures of walls that move: all walls as they are now. Null where all stand still, and where
   /// nobody draws.
@@ -49,13 +50,13 @@ struct FrameView {
 struct FrameSnapshot {
   FrameInfo info;
   std::vector<Float4> positions, velocities;
-  std::vector<float> density, gamma, lambda;
+  std::vector<float> density, gamma, lambda, pressure;
   std::vector<std::uint32_t> neighbours;
   std::shared_ptr<const WallDrawing> walls;
 
   void assign(const FrameView& view);
   FrameView view() const {
-    return {info, positions, velocities, density, gamma, lambda, neighbours, {}, walls};
+    return {info, positions, velocities, density, gamma, lambda, neighbours, pressure, {}, walls};
   }
 };
 

@@ -4,44 +4,21 @@
 #include <cmath>
 
 #include "core/boundary/boundary.h"
+#include "core/simulation/upright_tank.h"
 #include "core/sph/cell_grid.h"
 
 namespace migiwa {
 
 namespace {
 
-struct Tank {
-  Vec3d center;
-  Eigen::Matrix3d axes;  ///< columns; the second points up
-  Vec3d half;            ///< along those axes
-};
-
-/// The box that holds the fluid, if gravity runs along one of its axes and nothing else stands in it.
-std::optional<Tank> uprightTank(const Scene& scene) {
-  if (scene.gravity.norm() <= 0 || scene.surfaces.size() != 1 || scene.surfaces.front()->motion)
-    return std::nullopt;
-  const BoxGeometry* box = scene.surfaces.front()->tank();
-  if (box == nullptr) return std::nullopt;
-  int axis = 0;
-  const Vec3d along = box->axes.transpose() * -scene.gravity.normalized();
-  if (along.cwiseAbs().maxCoeff(&axis) < 0.9999) return std::nullopt;
-  const int first = (axis + 2) % 3, second = (axis + 1) % 3;
-  Tank tank;
-  tank.center = box->center;
-  tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis),
-      box->axes.col(second);
-  tank.half = {box->halfExtents[first], box->halfExtents[axis], box->halfExtents[second]};
-  return tank;
-}
-
 /// Volume of the strips of cross-section a x a along the four vertical edges and the four floor edges, up to
 /// `level`.
-double stripVolume(const Tank& tank, double a, double level) {
+double stripVolume(const UprightTank& tank, double a, double level) {
   const double width = 2 * tank.half.x() - 2 * a, depth = 2 * tank.half.z() - 2 * a;
   return 4 * a * a * level + 2 * a * std::min(a, level) * (width + depth);
 }
 
-bool inStrip(const Vec3d& local, const Tank& tank, double a) {
+bool inStrip(const Vec3d& local, const UprightTank& tank, double a) {
   const bool nearX = tank.half.x() - std::abs(local.x()) < a;
   const bool nearZ = tank.half.z() - std::abs(local.z()) < a;
   const bool nearFloor = local.y() + tank.half.y() < a;
@@ -108,11 +85,10 @@ void SettledSampler::sample(const Scene& scene, std::span<const Float4> position
     if (std::isfinite(nearest.distance)) (nearest.nearWall ? nearWall_ : bulk_).add(nearest.distance);
   }
 
-  const std::optional<Tank> tank = uprightTank(scene);
+  const std::optional<UprightTank> tank = uprightTank(scene);
   if (!tank) return;
   const double a = scene.particleSpacing;
-  const double floorArea = 4 * tank->half.x() * tank->half.z();
-  const double level = static_cast<double>(n) * a * a * a / floorArea;
+  const double level = tank->levelOf(static_cast<double>(n) * a * a * a);
   double heights = 0;
   long crowded = 0;
   for (const Float4& p : positions) {

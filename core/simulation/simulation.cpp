@@ -56,6 +56,7 @@ struct Simulation::State {
   std::shared_ptr<const WallDrawing> drawnWalls;  ///< as they are now; null: nobody has asked
   std::vector<std::uint32_t> savedNeighbours;     ///< counts that came with a save, until the next step
   bool stepTaken = true;                          ///< false: the last step was refused
+  std::vector<float> pressure;                    ///< (Pa) of the last step; empty: nobody watches
   long frame = 0;
   double time = 0;
 };
@@ -144,6 +145,7 @@ void Simulation::State::describeFrame() {
   info.errors = statistics.steps > 0 ? step.errors : std::vector<IterationError>();
   info.stateHash = hash();
   info.energy = statistics.energy.history;
+  step.pressure.pressures(step, pressure);
 }
 
 /// Walls are where they end up, having been at their places of `before`.
@@ -308,6 +310,7 @@ FrameView Simulation::view() const {
           step.gamma,
           step.lambda,
           saved.empty() ? step.neighbours.counts() : saved,
+          state_->pressure,
           step.particles.id};
 }
 
@@ -317,6 +320,17 @@ FrameView Simulation::drawnView() const {
   if (!state_->drawnWalls) state_->drawnWalls = std::make_shared<const WallDrawing>(walls());
   result.walls = state_->drawnWalls;
   return result;
+}
+
+std::vector<Vec3f> Simulation::gammaGradients() const {
+  std::vector<Vec3f> gradients(state_->step.particles.size(), Vec3f::Zero());
+  for (const WallSlot& slot : state_->step.wallSlots) gradients[slot.particle] = slot.sample.gradient;
+  return gradients;
+}
+
+void Simulation::watchPressure(bool on) {
+  state_->step.pressure.watch(on);
+  state_->pressure.clear();
 }
 
 std::uint64_t Simulation::stateHash() const {
@@ -349,6 +363,7 @@ void Simulation::visitState(StateVisitor& visitor) {
   state.emission.visit(visitor);
   if (!visitor.reading()) return;
   state.savedNeighbours = std::move(neighbours);
+  state.step.pressure.clear();
   state.describeFrame();
   // Where walls are follows from the time.
   if (state.boundary.moves()) state.moveWalls(state.time, state.time);

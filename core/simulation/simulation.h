@@ -45,6 +45,11 @@ class Simulation {
   /// The same for a picture: with the walls where some of them move. Their drawing is made when it is first
   /// asked for in a frame; a run that nobody looks at makes none.
   FrameView drawnView() const;
+  /// h grad gamma for the density kernel at each particle, in the order of view(); 0 where no wall is in
+  /// reach.
+  std::vector<Vec3f> gammaGradients() const;
+  /// From the next frame on, view() has pressures, or none; state and hash are the same either way.
+  void watchPressure(bool on);
   /// Hash of ids, positions and velocities; the same for any number of threads.
   std::uint64_t stateHash() const;
   const RunStatistics& statistics() const;

@@ -42,6 +42,11 @@ SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoi
   return statistics;
 }
 
+SlimStatistics measureSlim(const SlimModel& model, const ImportedShape& shape, ThreadPool& pool) {
+  return measureSlim(
+      model, shape.isMesh() ? samplePoints(shape.mesh, kMeasuredPoints, 2) : shape.cloud.points, pool);
+}
+
 SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool,
                   const std::function<void(double)>& progress) {
   if (!(options.tolerance > 0) && options.nodes <= 0 && !(options.radius > 0))
@@ -53,8 +58,7 @@ SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool
   data.degree = options.degree;
   data.closed = shape.closed;
   const SlimModel model(data.nodes, data.degree, data.closed, pool);
-  data.statistics = measureSlim(
-      model, shape.isMesh() ? samplePoints(shape.mesh, kMeasuredPoints, 2) : shape.cloud.points, pool);
+  data.statistics = measureSlim(model, shape, pool);
   return data;
 }
 

@@ -48,6 +48,8 @@ std::string cutTo(SlimData& data, double tolerance, int nodes);
 /// Distances from `points` to the surface.
 SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoint>& points,
                            ThreadPool& pool);
+/// From points on the shape: on a mesh some that no fit sees, of a point cloud all.
+SlimStatistics measureSlim(const SlimModel& model, const ImportedShape& shape, ThreadPool& pool);
 
 void transformShape(ImportedShape& shape, const Transform& transform);
 void transformNodes(std::vector<SlimNode>& nodes, const Transform& transform);

@@ -52,6 +52,7 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
   watch("gamma");
   state.errors.clear();
   state.iterations = 0;
+  state.pressure.begin(state);
   Chebyshev chebyshev;
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
@@ -64,6 +65,7 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
     state.times.time("position", [&] {
       stages::movePositions(state, weight);
       if (state.boundary.moves()) state.wallWork.iterate(wallPush(state), weight);
+      state.pressure.iterate(state, weight);
     });
     watch("position");
     effects.changePositions(state, weight);

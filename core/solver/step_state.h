@@ -14,6 +14,7 @@
 #include "core/solver/energy.h"
 #include "core/solver/iteration_error.h"
 #include "core/solver/parameters.h"
+#include "core/solver/pressure.h"
 #include "core/sph/neighbour_lists.h"
 #include "core/sph/resting_lattice.h"
 
@@ -82,6 +83,8 @@ struct StepState {
   // Energy that the step was given, see core/solver/energy.h.
   WallWork wallWork;
   double effectWork = 0;  ///< by the effects (m^2/s^2); friction at moving walls included
+
+  PressureSum pressure;
 
   StageTimes times;
 

@@ -40,7 +40,9 @@ std::vector<ConvergenceLine> convergenceOf(const StudyPlan& plan, const std::vec
   for (const FinishedRun& run : runs) {
     std::string label;
     for (std::size_t k = 0; k < plan.axes.size(); ++k)
-      if (k != axis) label += (label.empty() ? "" : ", ") + plan.axes[k].label(run.values[k]);
+      if (k != axis)
+        label += (label.empty() ? "" : ", ") + (isNumeric(plan.axes[k]) ? plan.axes[k].name() + " " : "") +
+                 plan.axes[k].label(run.values[k]);
     auto line =
         std::find_if(lines.begin(), lines.end(), [&](const auto& known) { return known.label == label; });
     if (line == lines.end()) line = lines.insert(lines.end(), {label, {}, {}});

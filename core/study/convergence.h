@@ -18,7 +18,7 @@ bool isNumeric(const StudyAxis& axis);
 std::vector<std::size_t> convergenceAxes(const StudyPlan& plan);
 
 struct ConvergenceLine {
-  std::string label;  ///< the values of the other axes; empty if there are none
+  std::string label;  ///< the values of the other axes, numbers with their names; empty if there are none
   std::vector<ValueAndError> points;
   std::optional<double> order;
 };

@@ -19,6 +19,8 @@ struct StudyAxis {
 
   /// What a value sets.
   std::vector<Override> overrides(const std::string& value) const;
+  /// What people call the setting: the last token of its pointer.
+  std::string name() const { return pointer.substr(pointer.rfind('/') + 1); }
   /// What tells a value from the others, in pictures: the last of its parts.
   std::string label(const std::string& value) const;
 };

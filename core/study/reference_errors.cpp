@@ -66,11 +66,11 @@ std::vector<double> densities(const Scene& scene, std::span<const Float4> positi
 
 void ReferenceSampler::sample(const Simulation& simulation) {
   const FrameView view = simulation.view();
-  sample(simulation.scene(), simulation.time(), view.positions, view.gamma);
+  sample(simulation.scene(), simulation.time(), view.positions, view.gamma, simulation.gammaGradients());
 }
 
 void ReferenceSampler::sample(const Scene& scene, double time, std::span<const Float4> positions,
-                              std::span<const float> gamma) {
+                              std::span<const float> gamma, std::span<const Vec3f> gradients) {
   if (positions.empty()) return;
   ThreadPool pool(threads_);
   const std::vector<GammaSample> reference = referenceGamma(scene, time, positions, pool);
@@ -87,6 +87,9 @@ void ReferenceSampler::sample(const Scene& scene, double time, std::span<const F
     gammaSum_ += error;
     gammaMax_ = std::max(gammaMax_, error);
     ++nearWalls_;
+    if (gradients.empty()) continue;
+    gradientSum_ += static_cast<double>((gradients[i] - reference[i].gradient).norm());
+    ++gradients_;
   }
 }
 
@@ -96,6 +99,7 @@ ReferenceErrors ReferenceSampler::result() const {
     errors.gammaMean = gammaSum_ / static_cast<double>(nearWalls_);
     errors.gammaMax = gammaMax_;
   }
+  if (gradients_ > 0) errors.gradientMean = gradientSum_ / static_cast<double>(gradients_);
   if (particles_ > 0) {
     errors.densityMean = densitySum_ / static_cast<double>(particles_);
     errors.densityMax = densityMax_;

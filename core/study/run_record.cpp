@@ -1,5 +1,6 @@
 #include "core/study/run_record.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -46,6 +47,12 @@ void writeRecord(const std::filesystem::path& file, const RunRecord& record) {
   root["threads"] = record.threads;
   root["measures"] = Json::object();
   for (const auto& [name, value] : record.measures) root["measures"][name] = toJson(value);
+  root["pressure"] = Json::array();
+  for (const PressureLayer& layer : record.pressure)
+    root["pressure"].push_back({layer.depth, layer.pressure, layer.particles});
+  root["energy"] = Json::array();
+  for (const EnergySample& sample : record.energy)
+    root["energy"].push_back({sample.time, sample.kinetic, sample.potential, sample.source});
   root["timings"] = Json::array();
   for (const RunTiming& timing : record.timings) {
     Json stages = Json::object();
@@ -72,6 +79,12 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file) {
     for (const auto& [name, value] : root.at("measures").items())
       record.measures.emplace_back(
           name, value.is_null() ? std::nullopt : std::optional<double>(value.get<double>()));
+    for (const auto& [depth, pressure, particles] :
+         root.at("pressure").get<std::vector<std::array<double, 3>>>())
+      record.pressure.push_back({depth, pressure, particles});
+    for (const auto& [time, kinetic, potential, source] :
+         root.at("energy").get<std::vector<std::array<double, 4>>>())
+      record.energy.push_back({time, kinetic, potential, source});
     for (const Json& timing : root.at("timings")) record.timings.push_back(timingOf(timing));
     return record;
   } catch (const Json::exception& error) {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/base/stage_times.h"
+#include "core/simulation/energy_balance.h"
+#include "core/study/pressure_profile.h"
 
 namespace migiwa {
 
@@ -29,7 +31,9 @@ struct RunRecord {
   int threads = 0;
   /// Name of a column (core/study/table.h) and value, null where there is nothing to measure.
   std::vector<std::pair<std::string, std::optional<double>>> measures;
-  std::vector<RunTiming> timings;  ///< one a repetition
+  std::vector<PressureLayer> pressure;  ///< at rest, from the level down; empty outside upright tanks
+  std::vector<EnergySample> energy;     ///< over the run
+  std::vector<RunTiming> timings;       ///< one a repetition
 
   std::optional<double> measure(const std::string& name) const;
 };

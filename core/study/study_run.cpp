@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "core/base/disk_cache.h"
 #include "core/base/error.h"
 #include "core/io/report.h"
 #include "core/simulation/run.h"
 #include "core/study/peak_memory.h"
+#include "core/study/pressure_profile.h"
 #include "core/study/reference_errors.h"
 
 namespace migiwa {
@@ -36,22 +39,46 @@ std::string troubleOf(const Report& report) {
   return text;
 }
 
+/// Reads the scene and makes all that is made once, as if for the first time, in `seconds`.
+std::unique_ptr<Simulation> prepared(const StudyPlan& plan, std::size_t run, int threads, double& seconds) {
+  const MadeAnew anew;
+  StageTimes once;
+  std::unique_ptr<Simulation> simulation;
+  once.time("precomputation", [&] {
+    simulation = std::make_unique<Simulation>(readScene(plan.scene, plan.overrides(run)), threads);
+  });
+  seconds = once.seconds("precomputation");
+  return simulation;
+}
+
+/// Mean distance (m) of fitted walls from their shapes, the largest of all walls; null where none is fitted.
+Measure wallError(const Scene& scene) {
+  Measure largest;
+  for (const auto& surface : scene.surfaces)
+    if (const Measure error = surface->fitError()) largest = std::max(largest.value_or(0), *error);
+  return largest;
+}
+
 }  // namespace
 
 RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
                           const std::function<void(double)>& eachFrame) {
-  const std::vector<Override> overrides = plan.overrides(run);
   RunRecord record;
   record.fingerprint = runFingerprint(plan, run);
   resetPeakMemory();
-  Simulation simulation(readScene(plan.scene, overrides), threads);
+  double preparation = 0;
+  const std::unique_ptr<Simulation> made = prepared(plan, run, threads, preparation);
+  Simulation& simulation = *made;
   ReferenceSampler reference(threads);
-  const long last = simulation.frameAt(plan.until);
+  PressureProfile pressure;
+  const long last = simulation.frameAt(plan.until), firstSettled = 9 * last / 10;
   // Of the run alone: judging a state takes memory of its own.
   double memory = peakMemory();
   const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
     eachFrame(simulation.time());
     const long frame = simulation.frame();
+    if (frame == firstSettled) simulation.watchPressure(true);
+    if (frame > firstSettled) pressure.sample(simulation);
     if (simulation.stopped() || kJudgedStates * frame / last == kJudgedStates * (frame - 1) / last)
       return true;
     memory = std::max(memory, peakMemory());
@@ -59,14 +86,15 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
     resetPeakMemory();
     return true;
   });
-  const Report report = makeReport(simulation, settled, overrides);
+  const Report report = makeReport(simulation, settled, plan.overrides(run));
+  const RunStatistics& statistics = simulation.statistics();
   const ReferenceErrors errors = reference.result();
 
   record.overrides = report.overrides;
   record.stateHash = report.stateHash;
   record.gammaMethod = report.gammaMethod;
   record.threads = simulation.threads();
-  if (simulation.statistics().failed()) record.trouble = troubleOf(report);
+  if (statistics.failed()) record.trouble = troubleOf(report);
   record.measures = {{"iterations", report.iterationsMean},
                      {"gamma_error", errors.gammaMean},
                      {"density_error_mean", errors.densityMean},
@@ -82,8 +110,16 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
                      {"bulk_spacing_p1", settled.bulkSpacingP1},
                      {"particles", report.particles},
                      {"steps", report.steps},
-                     {"nonfinite", report.nonfiniteParticles}};
-  record.timings.push_back(timingOf(report, simulation.statistics()));
+                     {"nonfinite", report.nonfiniteParticles},
+                     {"gamma_gradient_error", errors.gradientMean},
+                     {"pressure_error", pressure.error()},
+                     {"energy_gained", report.energyGain},
+                     {"energy_stored", report.energyStored},
+                     {"wall_error", wallError(simulation.scene())},
+                     {"precomputation_ms", 1e3 * preparation}};
+  record.pressure = pressure.layers();
+  record.energy = statistics.energy.history;
+  record.timings.push_back(timingOf(report, statistics));
   return record;
 }
 

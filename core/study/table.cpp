@@ -77,10 +77,28 @@ std::vector<Column> columns(const StudyPlan& plan, const std::vector<FinishedRun
   add("ms_per_step", [](const FinishedRun& run) {
     return digits(median(run.record, [](const RunTiming& timing) { return timing.msPerStep; }));
   });
-  for (const char* name :
-       {"iterations", "gamma_error", "density_error_mean", "density_error_max", "height_error",
-        "edge_crowding", "near_wall_spacing_p1", "rms_speed", "lost", "memory_bytes", "gamma_error_max",
-        "solver_density_error_mean", "bulk_spacing_p1", "particles", "steps", "nonfinite"})
+  for (const char* name : {"iterations",
+                           "gamma_error",
+                           "density_error_mean",
+                           "density_error_max",
+                           "height_error",
+                           "edge_crowding",
+                           "near_wall_spacing_p1",
+                           "rms_speed",
+                           "lost",
+                           "memory_bytes",
+                           "gamma_error_max",
+                           "solver_density_error_mean",
+                           "bulk_spacing_p1",
+                           "particles",
+                           "steps",
+                           "nonfinite",
+                           "gamma_gradient_error",
+                           "pressure_error",
+                           "energy_gained",
+                           "energy_stored",
+                           "wall_error",
+                           "precomputation_ms"})
     all.push_back(measured(name));
   const auto extreme = [](bool largest) {
     return [largest](const FinishedRun& run) {
@@ -116,7 +134,8 @@ std::optional<double> sound(const RunRecord& record, const char* column) {
 
 bool isTimeColumn(std::string_view column) {
   return column.starts_with("wall_ms_per_s") || column.starts_with("share_") || column == "ms_per_step" ||
-         column == "memory_bytes" || column == "repeats" || column == "threads" || column == "on_front";
+         column == "memory_bytes" || column == "repeats" || column == "threads" || column == "on_front" ||
+         column == "precomputation_ms";
 }
 
 const std::vector<AccuracyMeasure>& accuracyMeasures() {
@@ -128,6 +147,8 @@ const std::vector<AccuracyMeasure>& accuracyMeasures() {
        [](const RunRecord& r) { return sound(r, "density_error_max"); }},
       {"gamma_error", "error of γ near walls, mean", "",
        [](const RunRecord& r) { return sound(r, "gamma_error"); }},
+      {"gamma_gradient_error", "error of h∇γ near walls, mean", "",
+       [](const RunRecord& r) { return sound(r, "gamma_gradient_error"); }},
       {"height_error", "|settled height / expected − 1|", "",
        [](const RunRecord& r) {
          const Value found = sound(r, "height_error");
@@ -143,7 +164,13 @@ const std::vector<AccuracyMeasure>& accuracyMeasures() {
          const Value found = sound(r, "near_wall_spacing_p1");
          return found ? Value(std::max(1 - *found, 0.0)) : std::nullopt;
        }},
+      {"pressure_error", "pressure off ρgz, rms over ρgH", "",
+       [](const RunRecord& r) { return sound(r, "pressure_error"); }},
       {"rms_speed", "speed at the end, rms", "m/s", [](const RunRecord& r) { return sound(r, "rms_speed"); }},
+      {"energy_gained", "energy that the solver has added, largest", "J/kg",
+       [](const RunRecord& r) { return sound(r, "energy_gained"); }},
+      {"wall_error", "distance of the fitted wall from its shape, mean", "m",
+       [](const RunRecord& r) { return sound(r, "wall_error"); }},
   };
   return measures;
 }

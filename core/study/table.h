@@ -1,16 +1,25 @@
-// study.csv: one row a run. First the columns that people script against (in this order), then more:
-//   run                        number, from 1
-//   /pointer                   each varied value
-//   wall_ms_per_s, ms_per_step wall time a simulated second (ms/s; runCost) and a substep (ms, median)
-//   repetitions iterations                 of a substep, mean gamma_error, density_error_mean,
-//   density_error_max
-//                              judged by the reference (core/study/reference_errors.h)
-//   height_error               settled height over the expected one, less 1 (core/simulation/measures.h)
-//   edge_crowding, near_wall_spacing_p1, rms_speed (m/s), lost (particles), memory_bytes (peak)
-//   ...                        gamma_error_max, solver_density_error_mean (with the run's own gamma),
-//                              bulk_spacing_p1, particles, steps, nonfinite, wall_ms_per_s_min, _max (spread
-//                              over the repetitions), repeats, threads, gamma_method, state_hash, on_front,
-//                              share_STAGE (of the stages' sum, medians)
+// study.csv: one row a run. First the columns that people script against, in this order:
+// - run: number, from 1
+// - /pointer: each varied value
+// - wall_ms_per_s: wall time a simulated second (ms/s; runCost)
+// - ms_per_step: of a substep (ms, median over the repetitions)
+// - iterations: of a substep, mean
+// - gamma_error, density_error_mean, density_error_max: by the reference (core/study/reference_errors.h)
+// - height_error: settled height over the expected one, less 1 (core/simulation/measures.h)
+// - edge_crowding, near_wall_spacing_p1, rms_speed (m/s): as there
+// - lost (particles), memory_bytes (peak)
+// Then more:
+// - gamma_error_max, gamma_gradient_error: by the reference
+// - solver_density_error_mean: with the run's own gamma
+// - pressure_error: core/study/pressure_profile.h
+// - energy_gained, energy_stored (J/kg): the most that the solver has ever added, and what it found at the
+//   start (core/simulation/energy_balance.h)
+// - wall_error (m): of walls that are fitted, mean distance from their shape
+// - precomputation_ms: what is made once, as if for the first time: reading, fits, grids, filling
+// - bulk_spacing_p1, particles, steps, nonfinite, repeats, threads, gamma_method, state_hash
+// - wall_ms_per_s_min, _max: spread over the repetitions
+// - on_front: of density_error_mean
+// - share_STAGE: of the stages' sum, medians
 // A cell is empty where there is nothing to measure.
 #pragma once
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "core/boundary/gamma/grid_cache.h"
+#include "core/base/disk_cache.h"
 
 namespace migiwa {
 namespace {
@@ -81,6 +81,35 @@ TEST_F(SlimCache, IsReadAtTheNextStart) {
   const std::shared_ptr<const SlimWallData> read = prepareSlim(source_);
   EXPECT_EQ(read->model->nodes().size(), 1U);
   EXPECT_EQ(read->notes, planted.notes);
+}
+
+TEST_F(SlimCache, IsNotReadWhileAllIsMadeAnew) {
+  SlimFit planted;
+  planted.data.degree = 1;
+  planted.data.nodes.resize(1);
+  planted.data.nodes[0].radius = 0.5F;
+  ASSERT_TRUE(writeSlimFit(fileOf(source_), slimFitKey(source_), planted));
+  EXPECT_EQ(prepareSlim(source_)->model->nodes().size(), 1U);
+  std::size_t fitted = 0;
+  {
+    const MadeAnew anew;
+    fitted = prepareSlim(source_)->model->nodes().size();
+    EXPECT_GT(fitted, 50U);
+  }
+  // And it is kept, on disk and in memory.
+  EXPECT_EQ(readSlimFit(fileOf(source_), slimFitKey(source_))->data.nodes.size(), fitted);
+  EXPECT_EQ(prepareSlim(source_)->model->nodes().size(), fitted);
+}
+
+TEST_F(SlimCache, TheErrorOfAFitIsTheDistanceToItsShape) {
+  source_.nodes = 3000;
+  const std::shared_ptr<const SlimWallData> cube = prepareSlim(source_);
+  EXPECT_LT(*slimFitError(source_, *cube->model), 0.004);
+  // Of the same cube 0.1 further along x: two of its faces are off by that, the other four only where they
+  // stick out, by 0.05 at the mean over a tenth of each.
+  source_.transform.translate.x() = 0.1;
+  const double expected = (2 * 0.1 + 4 * 0.1 * 0.05) / 6;
+  EXPECT_NEAR(*slimFitError(source_, *cube->model), expected, 0.004);
 }
 
 TEST_F(SlimCache, TheKeyTellsAllThatMatters) {

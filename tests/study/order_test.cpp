@@ -51,9 +51,9 @@ TEST(Convergence, HasALineForEachCombinationOfTheOtherValues) {
   }
   const std::vector<ConvergenceLine> lines = convergenceOf(plan, runs, 1, accuracyMeasures().front());
   ASSERT_EQ(lines.size(), 4U);
-  EXPECT_EQ(lines[0].label, "mean, 1");
+  EXPECT_EQ(lines[0].label, "mean, substeps 1");
   EXPECT_NEAR(*lines[0].order, 2, 1e-12);
-  EXPECT_EQ(lines[2].label, "none, 1");
+  EXPECT_EQ(lines[2].label, "none, substeps 1");
   EXPECT_NEAR(*lines[2].order, 1, 1e-12);
   EXPECT_EQ(lines[3].points.size(), 2U) << "a run that failed has no error";
   EXPECT_FALSE(lines[3].order);

@@ -66,6 +66,26 @@ TEST(ReferenceErrors, ExactGammaHasNone) {
   EXPECT_NEAR(*errorsOf(points, gamma).gammaMean, 0.1 / 3, 0.001);
 }
 
+TEST(ReferenceErrors, ExactGradientHasNone) {
+  // Differences of the lattice's gamma, over a tenth of the support radius.
+  const Vec3d place = kSupport * Vec3d(0.25, 0.5, 0.25);
+  Vec3f gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3d step = 0.05 * kSupport * Vec3d::Unit(axis);
+    gradient[axis] = static_cast<float>((gammaByLattice(place + step) - gammaByLattice(place - step)) / 0.1);
+  }
+  const auto errorOf = [&](const Vec3f& given) {
+    ReferenceSampler sampler(1);
+    const std::vector<Float4> points{at(place.x(), place.y(), place.z())};
+    const std::vector<float> gamma{1};
+    const std::vector<Vec3f> gradients{given};
+    sampler.sample(tank(), 0, points, gamma, gradients);
+    return *sampler.result().gradientMean;
+  };
+  EXPECT_LT(errorOf(gradient), 0.02);
+  EXPECT_NEAR(errorOf(gradient + Vec3f(0.3F, 0, 0)), 0.3, 0.02);
+}
+
 TEST(ReferenceErrors, OnlyParticlesNearWallsCountForGamma) {
   EXPECT_FALSE(errorsOf({at(1, 1, 1)}, {0.5F}).gammaMean.has_value());
   EXPECT_FALSE(errorsOf({}, {}).densityMean.has_value());

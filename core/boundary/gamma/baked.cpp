@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/base/disk_cache.h"
 #include "core/boundary/gamma/bake.h"
 #include "core/boundary/gamma/gamma_methods.h"
 #include "core/boundary/gamma/grid_cache.h"

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <system_error>
 #include <type_traits>
 #include <typeinfo>
 
-#include <unistd.h>
-
 #include "core/base/checksum.h"
+#include "core/base/disk_cache.h"
 
 namespace migiwa {
 
@@ -132,17 +130,6 @@ std::string describeWalls(const Boundary& boundary) {
   return visitor.written();
 }
 
-fs::path cacheFolder() {
-  const auto set = [](const char* name) {
-    const char* value = std::getenv(name);
-    return value == nullptr ? fs::path() : fs::path(value);
-  };
-  if (const fs::path own = set("MIGIWA_CACHE"); !own.empty()) return own;
-  if (const fs::path cache = set("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "migiwa";
-  if (const fs::path home = set("HOME"); home.is_absolute()) return home / ".cache" / "migiwa";
-  return {};
-}
-
 fs::path gridFile(const fs::path& folder, const std::string& key) {
   char name[32];
   std::snprintf(name, sizeof name, "gamma_%016llx.grid",
@@ -151,6 +138,7 @@ fs::path gridFile(const fs::path& folder, const std::string& key) {
 }
 
 std::optional<GammaGrid> readGrid(const fs::path& file, const std::string& key) {
+  if (MadeAnew::active()) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   Header header{};
   in.read(reinterpret_cast<char*>(&header), sizeof header);
@@ -178,11 +166,6 @@ std::optional<GammaGrid> readGrid(const fs::path& file, const std::string& key) 
 }
 
 bool writeGrid(const fs::path& file, const std::string& key, const GammaGrid& grid) {
-  std::error_code code;
-  fs::create_directories(file.parent_path(), code);
-  // Under a name of this process alone: two that start at once do not write into each other's.
-  fs::path temporary = file;
-  temporary += "." + std::to_string(getpid()) + ".tmp";
   Header header{};
   header.magic = kMagic;
   header.version = kVersion;
@@ -194,18 +177,14 @@ bool writeGrid(const fs::path& file, const std::string& key, const GammaGrid& gr
   header.origin = {grid.origin.x(), grid.origin.y(), grid.origin.z()};
   header.cell = grid.cell;
   header.size = grid.size;
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(&header), sizeof header);
-  out.write(key.data(), static_cast<std::streamsize>(key.size()));
-  out.write(reinterpret_cast<const char*>(grid.blocks.data()),
-            static_cast<std::streamsize>(grid.blocks.size() * sizeof(std::int32_t)));
-  out.write(reinterpret_cast<const char*>(grid.coefficients.data()),
-            static_cast<std::streamsize>(grid.coefficients.size() * sizeof(float)));
-  out.close();
-  if (out) fs::rename(temporary, file, code);
-  if (out && !code) return true;
-  fs::remove(temporary, code);
-  return false;
+  return writeCacheFile(file, [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(&header), sizeof header);
+    out.write(key.data(), static_cast<std::streamsize>(key.size()));
+    out.write(reinterpret_cast<const char*>(grid.blocks.data()),
+              static_cast<std::streamsize>(grid.blocks.size() * sizeof(std::int32_t)));
+    out.write(reinterpret_cast<const char*>(grid.coefficients.data()),
+              static_cast<std::streamsize>(grid.coefficients.size() * sizeof(float)));
+  });
 }
 
 }  // namespace migiwa

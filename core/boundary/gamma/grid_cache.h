@@ -13,9 +13,7 @@ namespace migiwa {
 /// Every field of every surface as text: what tells one set of walls from another.
 std::string describeWalls(const Boundary& boundary);
 
-/// $MIGIWA_CACHE, or migiwa in $XDG_CACHE_HOME or in ~/.cache; empty where there is none of these.
-std::filesystem::path cacheFolder();
-/// The file for a key, in a folder.
+/// The file for a key, in a folder (cacheFolder()).
 std::filesystem::path gridFile(const std::filesystem::path& folder, const std::string& key);
 
 std::optional<GammaGrid> readGrid(const std::filesystem::path& file, const std::string& key);
