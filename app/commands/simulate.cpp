@@ -1,5 +1,4 @@
 // `migiwa simulate SCENE`: runs without any picture.
-#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -50,7 +49,7 @@ class SimulateRun {
       });
     }
     finishExport();
-    if (!options_.save.empty() && goodState()) save();
+    if (!options_.save.empty() && simulation_.goodState()) save();
     return report(settled);
   }
 
@@ -96,15 +95,6 @@ class SimulateRun {
       std::cerr << options_.exportFolder
                 << ": warning: files of an earlier, longer export follow those of this one (" << later
                 << ")\n";
-  }
-
-  /// A step that goes wrong is not taken: what is there is the state of the last good one.
-  bool goodState() const {
-    const FrameView view = simulation_.view();
-    const auto finite = [](const Float4& v) { return v.xyz().allFinite(); };
-    return simulation_.statistics().lostParticles == 0 &&
-           std::all_of(view.positions.begin(), view.positions.end(), finite) &&
-           std::all_of(view.velocities.begin(), view.velocities.end(), finite);
   }
 
   void save() { writeSave(options_.save, simulation_, sampler_, common_.overrides); }

@@ -196,8 +196,9 @@ void requireSameScene(const Json& header, const Simulation& simulation, const st
 
 void writeSave(const fs::path& file, Simulation& simulation, SettledSampler& sampler,
                const std::vector<Override>& overrides) {
-  if (simulation.stopped())
-    throw InputError(file.string(), "expected a run that can go on, found one that numerical trouble ended");
+  if (!simulation.goodState())
+    throw InputError(file.string(),
+                     "expected a run that can go on, found one that has lost particles or is not finite");
   StateWriter writer;
   simulation.visitState(writer);
   sampler.visit(writer);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "core/base/state_hash.h"
@@ -33,7 +34,8 @@ struct Simulation::State {
   void advanceSubstep(double start, double dt);
   EnergySums emit(double start);
   void partCrowded();
-  void refuseStep();
+  void refuseNotFinite();
+  void refuseSqueeze(const Squeeze& squeeze, double start);
   void moveWalls(double before, double now);
   double largestSpeed(double start, double span) const;
   std::uint64_t hash() {
@@ -65,10 +67,6 @@ namespace {
 
 /// Substeps a frame has at most: a run that needs more is told so instead of standing still.
 constexpr long kMostSubsteps = 1000;
-
-/// Density error of a start, or of what a step leaves, above which fluid is on top of fluid. A lattice
-/// between walls reads some percent.
-constexpr double kCrowded = 0.5;
 
 }  // namespace
 
@@ -191,7 +189,7 @@ void Simulation::State::partCrowded() {
 }
 
 /// The state stays the last good one, and the simulation stops there.
-void Simulation::State::refuseStep() {
+void Simulation::State::refuseNotFinite() {
   const StepFault fault = findFault(step, effects);
   std::string neighbours;
   constexpr std::size_t kNamed = 8;
@@ -206,6 +204,20 @@ void Simulation::State::refuseStep() {
                       "; the step was not taken");
 }
 
+/// The same where walls leave no room: they go back, too.
+void Simulation::State::refuseSqueeze(const Squeeze& squeeze, double start) {
+  std::ostringstream detail;
+  detail << "walls leave the fluid less room than it needs: however long it is solved for, its density stays "
+         << 1 + squeeze.largest << " of that at rest at (" << squeeze.place.x() << ", " << squeeze.place.y()
+         << ", " << squeeze.place.z() << ") m, and " << 1 + squeeze.mean << " in the mean of all, after "
+         << start << " s; the step was not taken. Let the fluid out, stop the moving wall earlier, or start "
+         << "or emit less fluid";
+  statistics.squeezed = true;
+  statistics.note("squeezed", statistics.steps + 1, detail.str());
+  if (boundary.moves()) moveWalls(start, start);
+  prepareFields(step);
+}
+
 void Simulation::State::advanceSubstep(double start, double dt) {
   const auto began = std::chrono::steady_clock::now();
   step.timeStep = static_cast<float>(dt);
@@ -216,8 +228,10 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   EnergySums before = health.energy;
   if (statistics.steps == 0) statistics.energy.stored = storedEnergy(step, dt);
   if (!emission.empty()) step.times.time("emitters", [&] { before += emit(start); });
-  stepTaken = advanceStep(step, effects);
-  if (!stepTaken) return refuseStep();
+  const StepRefusal refusal = advanceStep(step, effects);
+  stepTaken = !refusal.any();
+  if (refusal.notFinite) return refuseNotFinite();
+  if (refusal.squeeze.found) return refuseSqueeze(refusal.squeeze, start);
   if (step.errors.back().max > kCrowded) step.times.time("relax", [&] { partCrowded(); });
   step.times.time("check", [&] {
     health = inspect(step, limits);
@@ -345,6 +359,14 @@ int Simulation::threads() const {
 }
 bool Simulation::stopped() const {
   return state_->statistics.failed();
+}
+
+bool Simulation::goodState() const {
+  const auto finite = [](const Float4& v) { return v.xyz().allFinite(); };
+  const Particles& particles = state_->step.particles;
+  return state_->statistics.lostParticles == 0 &&
+         std::all_of(particles.position.begin(), particles.position.end(), finite) &&
+         std::all_of(particles.velocity.begin(), particles.velocity.end(), finite);
 }
 
 void Simulation::visitState(StateVisitor& visitor) {

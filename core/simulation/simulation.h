@@ -54,8 +54,11 @@ class Simulation {
   std::uint64_t stateHash() const;
   const RunStatistics& statistics() const;
   int threads() const;
-  /// True after a non-finite state or a lost particle; advanceFrame then does nothing more.
+  /// True after a non-finite state, a lost particle or a squeeze; advanceFrame then does nothing more.
   bool stopped() const;
+  /// Whether the state is one to go on from: also after a step that was refused, for that leaves the state of
+  /// before; not after a lost particle.
+  bool goodState() const;
   /// For a save: all that the future depends on, and what the report and a picture say of the past. Reading
   /// takes a simulation of the same scene; throws StateError when what is read does not fit, and is then of
   /// no further use.

@@ -34,6 +34,7 @@ struct RunStatistics {
   double densityErrorMax = 0;
   long lostParticles = 0;
   long nonfiniteParticles = 0;
+  bool squeezed = false;      ///< walls left the fluid no room
   double maxPenetration = 0;  ///< (m)
   double maxSpeed = 0;        ///< (m/s)
   EnergyBalance energy;
@@ -46,8 +47,8 @@ struct RunStatistics {
   void record(const StepState& state, const Health& health, double dt, double seconds);
   /// All of it for a save, but for gammaPicked and gammaReason, which follow from the scene.
   void visit(StateVisitor& visitor);
-  /// Non-finite state or lost particles: exit code 3.
-  bool failed() const { return lostParticles > 0 || nonfiniteParticles > 0; }
+  /// Non-finite state, lost particles or no room for the fluid: exit code 3.
+  bool failed() const { return lostParticles > 0 || nonfiniteParticles > 0 || squeezed; }
 };
 
 }  // namespace migiwa

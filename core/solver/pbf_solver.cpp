@@ -147,19 +147,20 @@ class FaultFinder {
 
 }  // namespace
 
-bool advanceStep(StepState& state, EffectPipeline& effects) {
+StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
   predictAndSolve(state, effects, [](std::string_view) {});
-  bool finite = true;
+  StepRefusal refusal;
   state.times.time("velocity", [&] {
-    finite = endsFinite(state);
-    if (finite) stages::updateVelocities(state);
+    refusal.notFinite = !endsFinite(state);
+    if (!refusal.notFinite) refusal.squeeze = findSqueeze(state);
+    if (!refusal.any()) stages::updateVelocities(state);
   });
-  if (!finite) {
+  if (refusal.any()) {
     undoPrediction(state);
-    return false;
+  } else {
+    effects.changeVelocities(state);
   }
-  effects.changeVelocities(state);
-  return true;
+  return refusal;
 }
 
 StepFault findFault(StepState& state, EffectPipeline& effects) {

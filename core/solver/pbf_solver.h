@@ -7,14 +7,22 @@
 #include <vector>
 
 #include "core/solver/effect_pipeline.h"
+#include "core/solver/squeeze.h"
 #include "core/solver/step_state.h"
 
 namespace migiwa {
 
-/// Advances the state by `state.timeStep`, with what the effects add. Where a particle would end at a place
-/// that is not finite the step is refused: returns false, and positions and velocities are those of before
-/// (velocities but for rounding, gravity's gain having been added and taken back), in another order.
-bool advanceStep(StepState& state, EffectPipeline& effects);
+/// Why a step was refused, if it was.
+struct StepRefusal {
+  bool notFinite = false;  ///< a particle would end at a place that is not finite
+  Squeeze squeeze;         ///< walls leave the fluid no room
+  bool any() const { return notFinite || squeeze.found; }
+};
+
+/// Advances the state by `state.timeStep`, with what the effects add. Positions and velocities of a refused
+/// step are those of before (velocities but for rounding, gravity's gain having been added and taken back),
+/// in another order.
+StepRefusal advanceStep(StepState& state, EffectPipeline& effects);
 
 /// What of a refused step was not finite first.
 struct StepFault {

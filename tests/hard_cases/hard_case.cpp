@@ -97,6 +97,7 @@ Observed observe(const Scene& scene, double until, int threads) {
   seen.particles = view.positions.size();
   seen.rmsSpeed = std::sqrt(squares / std::max<double>(1, static_cast<double>(seen.particles)));
   seen.steps = run.steps;
+  if (simulation.stopped()) seen.stopped = simulation.time();
   seen.hash = simulation.stateHash();
   for (const Trouble& trouble : run.trouble) seen.guards.push_back(trouble.kind);
   std::sort(seen.guards.begin(), seen.guards.end());
@@ -124,6 +125,8 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
   // Without walls nothing but gravity changes the momentum.
   if (seen.particles > 0 && !std::isfinite(seen.nearest))
     most("momentum (m/s)", seen.momentum, 1e-4 * std::max(seen.maxSpeed, 1.0));
+  most("time of its own end (s)", seen.stopped, expected.stopsBefore);
+  most("time of its own end, less (s)", -seen.stopped, -expected.stopsAfter);
   if (seen.guards != expected.guards) {
     std::string found;
     for (const std::string& guard : seen.guards) found += " " + guard;

@@ -26,6 +26,7 @@ struct Observed {
   double rmsSpeed = 0;    ///< at the end (m/s)
   double lowest = std::numeric_limits<double>::infinity();  ///< least coordinate y of a particle, ever (m)
   long steps = 0;
+  double stopped = 0;  ///< when the run ended itself (s); 0: it did not
   std::size_t particles = 0;
   std::uint64_t hash = 0;
   std::vector<std::string> guards;  ///< kinds of trouble that the run notes
@@ -33,17 +34,18 @@ struct Observed {
 };
 
 struct HardCase {
-  std::string name;                 ///< of the case
-  std::string scene;                ///< file in scenes/hard/ without its ending
-  double until = 0;                 ///< (s)
-  double speed = 0;                 ///< largest speed at any time (m/s)
-  double meanError = 0.01;          ///< largest mean density error at the end
-  double worstError = 0.5;          ///< largest density error at any time
-  double rmsSpeed = -1;             ///< largest rms speed at the end (m/s); negative: still moving
-  double lowest = -1e9;             ///< no particle is ever below (m)
-  int copies = 1;                   ///< times that the scene's fluid is there
-  bool everyMethod = false;         ///< also with other gamma methods than the scene's
-  std::vector<std::string> guards;  ///< that have to act, and no other ones
+  std::string name;                        ///< of the case
+  std::string scene;                       ///< file in scenes/hard/ without its ending
+  double until = 0;                        ///< (s)
+  double speed = 0;                        ///< largest speed at any time (m/s)
+  double meanError = 0.01;                 ///< largest mean density error at the end
+  double worstError = 0.5;                 ///< largest density error at any time
+  double rmsSpeed = -1;                    ///< largest rms speed at the end (m/s); negative: still moving
+  double lowest = -1e9;                    ///< no particle is ever below (m)
+  double stopsAfter = 0, stopsBefore = 0;  ///< when the run ends itself (s); 0: it does not
+  int copies = 1;                          ///< times that the scene's fluid is there
+  bool everyMethod = false;                ///< also with other gamma methods than the scene's
+  std::vector<std::string> guards;         ///< that have to act, and no other ones
 };
 
 std::vector<HardCase> hardCases();

@@ -55,6 +55,8 @@ with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run har
 - No particle may be lost, and none may get past a wall. Without walls the momentum may change by gravity only, to 10⁻⁴.
 - Every case gives the same hash with 1 and 3 threads. The dam and those of few particles also hold with `product`, `copula`, `directions`, `mean` and
   `nearest`.
+- Where walls leave the water no room there is no solution, and the run has to end with an honest error (exit code 3): a
+  case states from when to when, by the volume between the walls.
 - **Guards** are what the report lists as `trouble`: a case states which have to act, and no other may.
 
 )";
@@ -67,8 +69,7 @@ constexpr const char* kShort = R"(
   most of the gains come from; with gravity 0 the block leaves the walls at 0.24 m/s.
 - `wedge_to_nothing` stays within its energy, but single particles are pushed out of the tip at 15 m/s, three times the
   speed of the fall.
-- Not here yet: SLIM surfaces. A lid that squeezes water with no way out drives the speeds up without bound, with ever shorter
-  steps, instead of stopping with an honest error.
+- Not here yet: SLIM surfaces.
 - 8,000 particles on one point part, but the first steps list 64 million neighbours: time and memory grow with the square.
 )";
 
