@@ -35,7 +35,8 @@ SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
       pace_(pace),
       simulation_(std::make_unique<Simulation>(scene, threads)),
       scene_(simulation_->scene()),
-      walls_(simulation_->walls()) {
+      walls_(simulation_->walls()),
+      watchPressure_(scene.view.color == ColorField::pressure) {
   finished_.assign(simulation_->drawnView());
   hasFrame_ = true;
   thread_ = std::thread([this] { work(); });
@@ -79,6 +80,11 @@ void SimulationThread::apply(const Settings& settings) {
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   wake_.notify_one();
+}
+
+void SimulationThread::watchPressure(bool on) {
+  const std::lock_guard lock(mutex_);
+  watchPressure_ = on;
 }
 
 void SimulationThread::saveState(std::filesystem::path file, std::vector<Override> overrides) {
@@ -226,8 +232,10 @@ void SimulationThread::carryOutLoad(std::unique_lock<std::mutex>& lock) {
 }
 
 void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
+  const bool watchPressure = watchPressure_;
   lock.unlock();
   const auto start = Clock::now();
+  simulation_->watchPressure(watchPressure);
   simulation_->advanceFrame();
   const bool stopped = simulation_->stopped();
   const std::string trouble = stopped ? describe(simulation_->statistics()) : "";

@@ -38,6 +38,8 @@ class SimulationThread {
   void reset();
   /// Takes effect with the next frame.
   void apply(const Settings& settings);
+  /// From the next frame on, frames have pressures, or none.
+  void watchPressure(bool on);
 
   // The state on disk, as `migiwa simulate --save` and `--resume` keep it (core/io/save_file.h). What became
   // of it is in the status; faults leave the simulation as it is.
@@ -99,6 +101,7 @@ class SimulationThread {
   std::vector<std::promise<StateImage>> captures_;
   int steps_ = 0;
   std::optional<Settings> settings_;
+  bool watchPressure_;
 
   std::thread thread_;
 };

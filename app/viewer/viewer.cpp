@@ -131,6 +131,8 @@ Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
                    {"iterations", std::to_string(info.iterations)},
                    {"ms per step", milliseconds(info.stepSeconds, options_.timings)},
                    {"grid", formatNumber("%g m", renderer_.ground().gridSpacing)}}};
+  if (view_.color == ColorField::pressure && frame.pressure.empty() && !frame.positions.empty())
+    caption.rows.emplace_back("pressure", "from the next step on");
   if (run.stopped) caption.rows.emplace_back("state", "stopped");
   const std::size_t equals = options_.note.find(" = ");
   if (equals != std::string::npos) {

@@ -47,7 +47,9 @@ class Viewer {
 
   const Settings& settings() const { return settings_; }
   ViewState& view() { return view_; }
-  ColorFieldInfo colorInfo(ColorField field) const { return colorFieldInfo(field, referenceSpeed_); }
+  ColorFieldInfo colorInfo(ColorField field) const {
+    return colorFieldInfo(field, referenceSpeed_, scene_.solver.restDensity);
+  }
   /// Ends of the colour map for a field, in its unit.
   std::array<double, 2> colorRange(ColorField field) const;
 

@@ -81,6 +81,7 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
     viewer.copyToWindow();
     window.swap();
     carryOut(wishes, viewer.settings(), *simulation);
+    simulation->watchPressure(viewer.view().color == ColorField::pressure);
     keepState(wishes, session, *simulation);
     carryOut(editor, session, viewer.settings(), viewer.view());
     if (wishes.savePicture && options.savePicture) {

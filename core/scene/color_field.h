@@ -6,8 +6,8 @@
 
 namespace migiwa {
 
-enum class ColorField { density, speed, gamma, lambda, neighbours };
-inline constexpr std::array<std::string_view, 5> kColorFieldNames{"density", "speed", "gamma", "lambda",
-                                                                  "neighbours"};
+enum class ColorField { density, speed, gamma, lambda, neighbours, pressure };
+inline constexpr std::array<std::string_view, 6> kColorFieldNames{"density", "speed",      "gamma",
+                                                                  "lambda",  "neighbours", "pressure"};
 
 }  // namespace migiwa

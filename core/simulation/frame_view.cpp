@@ -16,7 +16,7 @@ void FrameSnapshot::assign(const FrameView& view) {
   walls = view.walls;
 }
 
-ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed) {
+ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed, double restDensity) {
   switch (field) {
     case ColorField::density:
       return {"density ρ/ρ₀", "", 0.6, 1.2};
@@ -28,6 +28,8 @@ ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed) {
       return {"multiplier λh²", "", -0.02, 0};
     case ColorField::neighbours:
       return {"neighbours", "", 0, 60};
+    case ColorField::pressure:
+      return {"pressure p", "kPa", 0, 1e-3 * 0.5 * restDensity * referenceSpeed * referenceSpeed};
   }
   return {};
 }
@@ -46,6 +48,10 @@ void colorFieldValues(const FrameView& view, ColorField field, std::vector<float
     case ColorField::neighbours:
       out.resize(view.neighbours.size());
       for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<float>(view.neighbours[i]);
+      return;
+    case ColorField::pressure:
+      out.assign(view.positions.size(), 0);
+      for (std::size_t i = 0; i < view.pressure.size(); ++i) out[i] = 1e-3F * view.pressure[i];
       return;
     case ColorField::speed:
       out.resize(view.velocities.size());

@@ -66,9 +66,10 @@ struct ColorFieldInfo {
   std::string unit;   ///< empty for ratios and counts
   double low = 0, high = 1;
 };
-ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed);
+/// Pressures reach to that of water of `restDensity` (kg/m^3) that stops a jet of the reference speed (m/s).
+ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed, double restDensity);
 
-/// The field's value for each particle.
+/// The field's value for each particle; 0 for pressures that nobody has watched.
 void colorFieldValues(const FrameView& view, ColorField field, std::vector<float>& out);
 
 }  // namespace migiwa

@@ -115,6 +115,7 @@ Simulation::Simulation(Scene scene, int threads)
   State& state = *state_;
   fillScene(state.scene, state.boundary, state.step.particles);
   state.configure();
+  state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
   if (const long inside = stabilise(state.step); inside > 0) {
     state.statistics.note("started_in_wall", 0,
                           std::to_string(inside) +
@@ -344,7 +345,7 @@ std::vector<Vec3f> Simulation::gammaGradients() const {
 
 void Simulation::watchPressure(bool on) {
   state_->step.pressure.watch(on);
-  state_->pressure.clear();
+  if (!on) state_->pressure.clear();
 }
 
 std::uint64_t Simulation::stateHash() const {

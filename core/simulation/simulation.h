@@ -48,7 +48,8 @@ class Simulation {
   /// h grad gamma for the density kernel at each particle, in the order of view(); 0 where no wall is in
   /// reach.
   std::vector<Vec3f> gammaGradients() const;
-  /// From the next frame on, view() has pressures, or none; state and hash are the same either way.
+  /// From the next frame on, view() has pressures, or none; state and hash are the same either way. A scene
+  /// that is coloured by pressure has them from the start.
   void watchPressure(bool on);
   /// Hash of ids, positions and velocities; the same for any number of threads.
   std::uint64_t stateHash() const;

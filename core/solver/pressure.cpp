@@ -5,6 +5,7 @@
 namespace migiwa {
 
 void PressureSum::watch(bool on) {
+  if (on == watched_) return;
   watched_ = on;
   clear();
 }

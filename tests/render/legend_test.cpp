@@ -43,12 +43,13 @@ TEST(LegendTest, ShowsTheWholeMapFromLowToHigh) {
 
 TEST(LegendTest, EveryFieldHasALabelAndARange) {
   for (int i = 0; i < static_cast<int>(kColorFieldNames.size()); ++i) {
-    const ColorFieldInfo info = colorFieldInfo(static_cast<ColorField>(i), 6);
+    const ColorFieldInfo info = colorFieldInfo(static_cast<ColorField>(i), 6, 1000);
     EXPECT_FALSE(info.label.empty());
     EXPECT_LT(info.low, info.high);
   }
-  EXPECT_EQ(colorFieldInfo(ColorField::speed, 6).unit, "m/s");
-  EXPECT_EQ(colorFieldInfo(ColorField::speed, 6).high, 6);
+  EXPECT_EQ(colorFieldInfo(ColorField::speed, 6, 1000).unit, "m/s");
+  EXPECT_EQ(colorFieldInfo(ColorField::speed, 6, 1000).high, 6);
+  EXPECT_DOUBLE_EQ(colorFieldInfo(ColorField::pressure, 6, 1000).high, 18) << "rho v^2 / 2 in kPa";
 }
 
 TEST(LegendTest, ASceneMayFixTheRange) {

@@ -2,6 +2,7 @@
 #include "app/viewer/simulation_thread.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 
@@ -54,6 +55,27 @@ TEST_F(SimulationThreadTest, ComputesWhatASimulationOnThisThreadDoes) {
   for (int i = 0; i < 20; ++i) simulation_.step();
   ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time > 0.0999; }));
   EXPECT_EQ(frame_.info.stateHash, reference.stateHash());
+}
+
+TEST_F(SimulationThreadTest, FramesHavePressuresWhileTheyAreWatchedAndAfterAReset) {
+  const auto at = [&](double time) {
+    return waitFor(simulation_, frame_, [&] { return std::abs(frame_.info.time - time) < 1e-9; });
+  };
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  EXPECT_TRUE(frame_.pressure.empty());
+  simulation_.watchPressure(true);
+  simulation_.step();
+  ASSERT_TRUE(at(0.01));
+  EXPECT_EQ(frame_.pressure.size(), frame_.positions.size());
+  simulation_.reset();
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  EXPECT_EQ(frame_.pressure.size(), frame_.positions.size());
+  simulation_.watchPressure(false);
+  simulation_.step();
+  ASSERT_TRUE(at(0.01));
+  EXPECT_TRUE(frame_.pressure.empty());
 }
 
 TEST_F(SimulationThreadTest, PlaysAndPauses) {

@@ -65,6 +65,23 @@ TEST(Pressure, WatchingItChangesNothing) {
   EXPECT_TRUE(watched.view().pressure.empty());
 }
 
+TEST(Pressure, ASceneColouredByItHasItFromTheStart) {
+  Scene scene = smallDamBreak();
+  scene.view.color = ColorField::pressure;
+  Simulation simulation(scene, 1);
+  simulation.advanceFrame();
+  std::vector<float> values;
+  colorFieldValues(simulation.view(), ColorField::pressure, values);
+  const std::span<const float> pressure = simulation.view().pressure;
+  ASSERT_EQ(values.size(), pressure.size());
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_FLOAT_EQ(1000 * values[i], pressure[i]);
+  // Watched or not, there is a value for each particle.
+  simulation.watchPressure(false);
+  simulation.advanceFrame();
+  colorFieldValues(simulation.view(), ColorField::pressure, values);
+  EXPECT_EQ(values, std::vector<float>(pressure.size(), 0));
+}
+
 TEST(Pressure, IsNoneInFreeFall) {
   Scene scene = emptyScene();
   scene.gravity = {0, -9.81, 0};
