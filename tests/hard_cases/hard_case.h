@@ -33,6 +33,13 @@ struct Observed {
   FrameSnapshot end;
 };
 
+/// Particles below a height at the end, where so many fit.
+struct Fill {
+  double below = 0;      ///< height (m); 0: nothing is stated
+  double particles = 0;  ///< that fit there, by the volume
+  double layer = 0;      ///< particles in a layer one spacing high: it may be so many more or less
+};
+
 struct HardCase {
   std::string name;                        ///< of the case
   std::string scene;                       ///< file in scenes/hard/ without its ending
@@ -43,6 +50,7 @@ struct HardCase {
   double rmsSpeed = -1;                    ///< largest rms speed at the end (m/s); negative: still moving
   double lowest = -1e9;                    ///< no particle is ever below (m)
   double stopsAfter = 0, stopsBefore = 0;  ///< when the run ends itself (s); 0: it does not
+  Fill fill;                               ///< of a part of the scene
   int copies = 1;                          ///< times that the scene's fluid is there
   bool everyMethod = false;                ///< also with other gamma methods than the scene's
   std::vector<std::string> guards;         ///< that have to act, and no other ones
