@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -15,7 +16,7 @@ namespace {
 /// centre: whichever of the two comes nearer to the disc's area.
 std::vector<std::array<double, 2>> discLattice(double radius) {
   std::vector<std::array<double, 2>> best;
-  double least = INFINITY;
+  double least = std::numeric_limits<double>::infinity();
   const int reach = static_cast<int>(std::ceil(radius)) + 1;
   for (const double shift : {0.5, 0.0}) {
     std::vector<std::array<double, 2>> places;

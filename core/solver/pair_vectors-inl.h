@@ -126,11 +126,13 @@ struct PairCentre {
 };
 
 /// Asks early for the lists of the particles to come. From 100,000 particles on they are a stream that no
-/// cache holds, and the processor loses it among the rows of neighbours: a twentieth of a pass.
+/// cache holds, and the processor loses it among the rows of neighbours: a twentieth of a pass. The address
+/// is reckoned in bytes, for it may lie beyond the lists, where a pointer may not.
 HWY_INLINE void prefetchLists(const std::uint32_t* list) {
-  constexpr std::ptrdiff_t kAhead = 160, kCacheLine = 16;
-  __builtin_prefetch(list + kAhead);
-  __builtin_prefetch(list + kAhead + kCacheLine);
+  constexpr std::uintptr_t kAhead = 640, kCacheLine = 64;
+  const std::uintptr_t ahead = reinterpret_cast<std::uintptr_t>(list) + kAhead;
+  __builtin_prefetch(reinterpret_cast<const void*>(ahead));               // NOLINT: nothing is read
+  __builtin_prefetch(reinterpret_cast<const void*>(ahead + kCacheLine));  // NOLINT
 }
 
 /// The sums over the lanes of four vectors, as one float4.

@@ -10,11 +10,6 @@
 
 #include "tests/fuzz/fuzz_targets.h"
 
-/// assimp leaks what it had read of a file when it refuses it.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT: the name is the sanitizer's
-  return "leak:libassimp\n";
-}
-
 namespace migiwa::fuzz {
 namespace {
 

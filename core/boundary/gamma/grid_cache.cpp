@@ -123,7 +123,8 @@ bool readInto(std::ifstream& in, std::vector<T>& values, std::uint64_t count) {
 std::string describeWalls(const Boundary& boundary) {
   TextVisitor visitor;
   for (const auto& surface : boundary.surfaces()) {
-    visitor.add(typeid(*surface).name());
+    const Surface& one = *surface;
+    visitor.add(typeid(one).name());
     // As a writer of scenes does: it leaves the surface as it finds it.
     const_cast<Surface&>(*surface).describe(visitor);
   }

@@ -1,0 +1,51 @@
+#include "tests/render/shown_text.h"
+
+#include <array>
+#include <map>
+
+#include <imgui.h>
+
+namespace migiwa {
+namespace {
+
+/// Where a letter lies in the fonts' texture: its upper left and lower right corner.
+using Place = std::array<float, 4>;
+
+std::map<Place, char> letters() {
+  std::map<Place, char> result;
+  for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
+    for (const ImFontGlyph& glyph : font->Glyphs)
+      if (glyph.Visible != 0)
+        result[{glyph.U0, glyph.V0, glyph.U1, glyph.V1}] =
+            glyph.Codepoint < 128 ? static_cast<char>(glyph.Codepoint) : '?';
+  return result;
+}
+
+}  // namespace
+
+std::string shownText() {
+  // A space is wider.
+  const float adjoining = 0.2F * ImGui::GetIO().Fonts->Fonts.front()->FontSize;
+  const std::map<Place, char> known = letters();
+  std::string text;
+  const ImDrawData& drawn = *ImGui::GetDrawData();
+  for (int list = 0; list < drawn.CmdListsCount; ++list) {
+    const ImVector<ImDrawVert>& corners = drawn.CmdLists[list]->VtxBuffer;
+    ImVec2 end{-1e9F, 0};
+    for (int k = 0; k + 3 < corners.Size; ++k) {
+      const ImDrawVert &first = corners[k], &last = corners[k + 2];
+      const auto letter = known.find({first.uv.x, first.uv.y, last.uv.x, last.uv.y});
+      if (letter == known.end()) continue;
+      const float gap = first.pos.x - end.x;
+      const bool sameLine = first.pos.y < end.y;
+      if (!sameLine || gap < -adjoining || gap > adjoining) text += ' ';
+      text += letter->second;
+      end = last.pos;
+      k += 3;
+    }
+    text += ' ';
+  }
+  return text;
+}
+
+}  // namespace migiwa
