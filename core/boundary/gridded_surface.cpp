@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/base/available_memory.h"
 #include "core/boundary/spline_fit.h"
 #include "core/boundary/spline_value.h"
 
@@ -11,13 +12,17 @@ namespace {
 
 /// Memory that a grid may take (bytes), for each of the two arrays.
 constexpr double kMostBytes = 512.0 * 1024 * 1024;
+constexpr const char* kWhat = "a grid of wall distances";
+/// What fitting the splines takes in all, over their coefficients.
+constexpr double kFittingOverGrid = 3;
 /// Part of the margin up to which a point is projected by the grid. Deeper ones may be nearer to another side
 /// than the splines tell.
 constexpr float kShallow = 0.25F;
 
 }  // namespace
 
-GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool)
+GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool,
+                               const std::string& scenePlace)
     : shape_(std::move(shape)), reach_(kReach * supportRadius) {
   motion = shape_->motion;
   grid_.cell = supportRadius / kCellsPerSupport;
@@ -29,6 +34,8 @@ GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float suppo
   const auto width = static_cast<std::size_t>(grid_.size[0]),
              height = static_cast<std::size_t>(grid_.size[1]);
   const std::size_t rows = height * static_cast<std::size_t>(grid_.size[2]);
+  // The blocks, their least distances and the splines' own index of them.
+  requireMemory(3 * sizeof(float) * static_cast<double>(width * rows), kWhat, scenePlace);
   grid_.blocks.resize(width * rows);
   least_.resize(grid_.blocks.size() + 1);  // the last for all around the grid
   const float half = 0.5F * grid_.blockEdge(), around = std::sqrt(3.0F) * half;
@@ -55,12 +62,14 @@ GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float suppo
   std::int32_t used = 0;
   for (std::int32_t& block : grid_.blocks)
     if (block == kUsed) block = used++;
-  if (static_cast<double>(used) * Grid::kBlockFloats * sizeof(float) > kMostBytes) {
+  const double bytes = static_cast<double>(used) * Grid::kBlockFloats * sizeof(float);
+  if (bytes > kMostBytes) {
     grid_.blocks.assign(grid_.blocks.size(), Grid::kElsewhere);
     grid_.outside = Grid::kElsewhere;
     least_.assign(least_.size(), -reach_);
     return;
   }
+  requireMemory(kFittingOverGrid * bytes, kWhat, scenePlace);
   fitSplines<1>(grid_, BlockLayout(grid_.size, grid_.blocks), pool,
                 [&](const BlockPlace& place, BlockValues<1>& values) {
                   Vec3f normal;
@@ -123,7 +132,8 @@ bool GriddedSurface::outOfReach(const Vec3f& p, float reach) const {
 }
 
 std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
-    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool) {
+    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool,
+    const std::string& place) {
   constexpr double kMostBlocks = kMostBytes / sizeof(std::int32_t);
   std::vector<std::shared_ptr<const Surface>> result;
   for (const auto& surface : surfaces) {
@@ -131,7 +141,7 @@ std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
                         static_cast<double>(GriddedSurface::kCellsPerSupport);
     const bool fits = ((surface->bounds().size() / edge).array() + 6).prod() < kMostBlocks;
     result.push_back(surface->costlyDistance() && fits
-                         ? std::make_shared<const GriddedSurface>(surface, supportRadius, pool)
+                         ? std::make_shared<const GriddedSurface>(surface, supportRadius, pool, place)
                          : surface);
   }
   return result;

@@ -3,6 +3,8 @@
 // cost does not depend on what the shape is made of.
 #pragma once
 
+#include <string>
+
 #include "core/base/parallel.h"
 #include "core/boundary/spline_grid.h"
 #include "core/boundary/surface.h"
@@ -16,7 +18,9 @@ class GriddedSurface final : public Surface {
   /// Cells along a support radius, and support radii around the wall that have a grid.
   static constexpr float kCellsPerSupport = 5, kReach = 1.6F;
 
-  GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool);
+  /// Throws InputError at `scenePlace` where the grid has no room in memory.
+  GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool,
+                 const std::string& scenePlace = {});
 
   std::shared_ptr<const Surface> exact() const override { return shape_; }
 
@@ -64,8 +68,10 @@ class GriddedSurface final : public Surface {
 };
 
 /// The surfaces, those with costly distances behind grids for this support radius (m). Where a grid would
-/// take too much memory the shape stays as it is.
+/// take more than half a GiB the shape stays as it is. Throws InputError at `place` where a smaller one
+/// has no room in this machine's memory.
 std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
-    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool);
+    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius, ThreadPool& pool,
+    const std::string& place = {});
 
 }  // namespace migiwa

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -83,8 +84,20 @@ void Emitter::check(FieldVisitor& visitor, double spacing) {
   }
   if (visitor.sound({"start", "stop"}) && stop <= start)
     visitor.fault("stop", "expected a time after start, found an earlier one");
-  if (spacing > 0 && visitor.sound({"radius", "size"}) && mouthLayer(*this, spacing).places.empty())
+  if (spacing <= 0 || !visitor.sound({"radius", "size"})) return;
+  // One too large to be counted by making it has about as many as its area says.
+  constexpr double kCounted = 1e5;
+  const double about = area() / (spacing * spacing);
+  const double layer =
+      about < kCounted ? static_cast<double>(mouthLayer(*this, spacing).places.size()) : std::ceil(about);
+  if (layer == 0)
     visitor.fault("", "expected a mouth with room for a particle, found one smaller than particle_spacing");
+  if (layer > particles && visitor.sound({"particles"})) {
+    std::ostringstream text;
+    text << "expected at least the " << layer << " particles of one layer in the mouth, found " << particles
+         << "; a larger particle_spacing makes fewer";
+    visitor.fault("particles", text.str());
+  }
 }
 
 double Emitter::area() const {

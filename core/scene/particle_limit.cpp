@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <limits>
 
 namespace migiwa {
 
 namespace {
 
-constexpr double kLargestCount = 2147483647;  // particles are numbered with 32 bits, one of them for the sign
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// Neighbours are listed by their offsets in bytes, of 16 a particle, in 32 bits; one place is for the ghost.
+constexpr double kLargestCount = 268435455;
 
 /// With so many significant digits, and never fewer than the whole ones unless there are very many.
 std::string digits(double value, int significant) {
@@ -24,12 +22,6 @@ std::string digits(double value, int significant) {
   return text;
 }
 
-double firstNumber(const char* file) {
-  std::ifstream in(file);
-  double value = kInfinite;
-  return in >> value ? value : kInfinite;  // cgroups write "max" for no limit
-}
-
 }  // namespace
 
 double particleCount(const Scene& scene) {
@@ -38,22 +30,6 @@ double particleCount(const Scene& scene) {
   for (const Emitter& emitter : scene.emitters)
     particles += emitter.count(scene.particleSpacing, scene.duration);
   return particles;
-}
-
-double availableMemory() {
-  double available = kInfinite;
-  std::ifstream in("/proc/meminfo");
-  std::string key;
-  double kibibytes = 0;
-  while (in >> key >> kibibytes) {
-    if (key == "MemAvailable:") available = kibibytes * 1024;
-    std::getline(in, key);
-  }
-  // A container may have less than its machine.
-  const double limit = firstNumber("/sys/fs/cgroup/memory.max");
-  if (std::isfinite(limit))
-    available = std::min(available, limit - std::min(limit, firstNumber("/sys/fs/cgroup/memory.current")));
-  return available;
 }
 
 std::optional<std::string> tooManyParticles(double particles, double spacing, double memory) {

@@ -14,9 +14,6 @@ inline constexpr double kBytesPerParticle = 600;
 /// Particles of all fluid sources, and of all emitters within the duration, at most.
 double particleCount(const Scene& scene);
 
-/// Memory that can still be had (bytes), infinite where the system does not say.
-double availableMemory();
-
 /// "expected ..., found ..." with the spacing that would do, or nothing when `particles` fit into `memory`
 /// (bytes).
 std::optional<std::string> tooManyParticles(double particles, double spacing, double memory);

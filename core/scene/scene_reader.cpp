@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/base/available_memory.h"
 #include "core/scene/fault_list.h"
 #include "core/scene/include.h"
 #include "core/scene/json_reader.h"

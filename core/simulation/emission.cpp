@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <string>
 
+#include "core/base/available_memory.h"
+#include "core/scene/particle_limit.h"
+
 namespace migiwa {
 
 namespace {
 
-/// Makes room for `size` particles and some more, so that layers do not move the buffers one by one.
-void makeRoom(StepState& state, std::size_t size) {
-  if (size <= state.particles.id.capacity()) return;
+/// Makes room for `size` particles and some more, so that layers do not move the buffers one by one. False
+/// where that memory cannot be had.
+bool makeRoom(StepState& state, std::size_t size) {
+  const std::size_t capacity = state.particles.id.capacity();
+  if (size <= capacity) return true;
   const std::size_t room = size + size / 2 + 1024;
+  if (kBytesPerParticle * static_cast<double>(room - capacity) > availableMemory()) return false;
   state.particles.position.reserve(room);
   state.particles.velocity.reserve(room);
   state.particles.id.reserve(room);
@@ -18,11 +24,16 @@ void makeRoom(StepState& state, std::size_t size) {
   state.current.reserve(withGhost);
   state.previous.reserve(withGhost);
   state.paired.reserve(withGhost);
+  if (!state.before.position.empty()) {
+    state.before.position.reserve(room);
+    state.before.velocity.reserve(room);
+  }
   state.spareIds.reserve(room);
   state.wallSlot.reserve(room);
   state.gamma.reserve(room);
   state.density.reserve(room);
   state.lambda.reserve(room);
+  return true;
 }
 
 }  // namespace
@@ -48,7 +59,6 @@ Emission::Emission(Scene& scene, const Boundary& boundary) : given_(scene.emitte
 
 void Emission::addLayer(const Mouth& mouth, double age, StepState& state) {
   Particles& particles = state.particles;
-  makeRoom(state, particles.size() + mouth.layer.places.size());
   const bool slots = state.wallSlot.size() == particles.size();
   for (const Vec3d& place : mouth.layer.places) {
     particles.position.emplace_back(Vec3f((place + age * mouth.velocity).cast<float>()));
@@ -70,6 +80,13 @@ void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
         statistics.note("emitter_limit", statistics.steps,
                         "/emitters/" + std::to_string(k) + " has given the " +
                             std::to_string(given.particles) + " particles that it may give");
+        break;
+      }
+      if (!makeRoom(state, state.particles.size() + mouth.layer.places.size())) {
+        statistics.note("emitter_memory", statistics.steps,
+                        "/emitters/" + std::to_string(k) +
+                            " gives nothing more: there is no memory left for " + std::to_string(layer) +
+                            " particles beside " + std::to_string(state.particles.size()));
         break;
       }
       addLayer(mouth, time - leaves, state);

@@ -6,10 +6,13 @@
 #include <sstream>
 #include <string>
 
+#include "core/base/available_memory.h"
+#include "core/base/guard.h"
 #include "core/base/state_hash.h"
 #include "core/boundary/boundary.h"
 #include "core/boundary/gridded_surface.h"
 #include "core/boundary/handling.h"
+#include "core/scene/particle_limit.h"
 #include "core/simulation/emission.h"
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
@@ -28,7 +31,8 @@ struct Simulation::State {
         emission(scene, boundary) {}
 
   Boundary walls() {
-    return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool));
+    return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
+                                      scene.file.string() + ":/boundary/surfaces"));
   }
   void configure();
   void advanceSubstep(double start, double dt);
@@ -83,7 +87,7 @@ void Simulation::State::configure() {
     step.supportRadius = supportRadius;
   }
   step.thinWalls = thinWalls(boundary, step.supportRadius);
-  step.barringWalls = barringWalls(boundary, step.supportRadius);
+  if (kGuards) step.barringWalls = barringWalls(boundary, step.supportRadius);
   step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
   gamma = {};
   info.handling = "no correction";
@@ -116,20 +120,24 @@ Simulation::Simulation(Scene scene, int threads)
   fillScene(state.scene, state.boundary, state.step.particles);
   state.configure();
   state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
-  if (const long inside = stabilise(state.step); inside > 0) {
+  // The reader has asked before there were grids of the walls.
+  requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
+                state.scene.file.string() + ":/particle_spacing");
+  if (const long inside = kGuards ? stabilise(state.step) : 0; inside > 0) {
     state.statistics.note("started_in_wall", 0,
                           std::to_string(inside) +
                               " particles began nearer than half a spacing to a wall or beyond "
                               "it; they were moved out without gaining speed");
   } else {
     prepareFields(state.step);
-    if (const double error = state.step.errors.back().max; error > kCrowded) {
+    if (const double error = state.step.errors.back().max; kGuards && error > kCrowded) {
       relax(state.step);
       state.statistics.note("started_crowded", 0,
                             "sources overlap: density " + std::to_string(1 + error) +
                                 " of that at rest; particles were moved apart without gaining speed");
     }
   }
+  state.statistics.noteSpread(state.step, 0);
   state.health = inspect(state.step, state.limits);
   state.statistics.energy.begin(state.health.energy, state.step);
   state.info.stateHash = stateHash();
@@ -222,7 +230,7 @@ void Simulation::State::refuseSqueeze(const Squeeze& squeeze, double start) {
 void Simulation::State::advanceSubstep(double start, double dt) {
   const auto began = std::chrono::steady_clock::now();
   step.timeStep = static_cast<float>(dt);
-  step.gammaFloored = 0;
+  step.gammaFloored = step.spreadParticles = 0;
   savedNeighbours.clear();
   step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
@@ -233,7 +241,7 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   stepTaken = !refusal.any();
   if (refusal.notFinite) return refuseNotFinite();
   if (refusal.squeeze.found) return refuseSqueeze(refusal.squeeze, start);
-  if (step.errors.back().max > kCrowded) step.times.time("relax", [&] { partCrowded(); });
+  if (kGuards && step.errors.back().max > kCrowded) step.times.time("relax", [&] { partCrowded(); });
   step.times.time("check", [&] {
     health = inspect(step, limits);
     statistics.energy.record(step, before, health.energy, dt, start + dt);

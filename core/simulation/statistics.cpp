@@ -17,6 +17,13 @@ void RunStatistics::note(const std::string& kind, long step, const std::string& 
   }
 }
 
+void RunStatistics::noteSpread(const StepState& state, long step) {
+  if (state.spreadParticles == 0) return;
+  note("heap", step,
+       std::to_string(state.spreadParticles) +
+           " particles lay on heaps, many where one has room; they were spread without gaining speed");
+}
+
 void RunStatistics::record(const StepState& state, const Health& health, double dt, double seconds) {
   ++steps;
   simulatedSeconds += dt;
@@ -42,6 +49,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
     note("gamma_floor", steps,
          std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
   }
+  noteSpread(state, steps);
   if (health.nonfinite > 0) {
     note("nonfinite", steps,
          std::to_string(health.nonfinite) + " particles are not finite, particle " +

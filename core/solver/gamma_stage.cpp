@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/guard.h"
 #include "core/solver/clearance.h"
 #include "core/solver/stages.h"
 
@@ -69,7 +70,7 @@ float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius)
 }
 
 long floorGamma(const StepState& state, float& gamma) {
-  if (gamma >= kGammaFloor || state.addsWallDensity()) return 0;
+  if (!kGuards || gamma >= kGammaFloor || state.addsWallDensity()) return 0;
   gamma = kGammaFloor;
   return 1;
 }

@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include "core/base/guard.h"
 #include "core/solver/coincident_pair.h"
 #include "core/solver/step_state.h"
 #include "core/sph/kernel_vectors-inl.h"
@@ -119,6 +120,7 @@ struct PairCentre {
     PairOffsets pair{hn::Sub(x, others.x), hn::Sub(y, others.y), hn::Sub(z, others.z), hn::Zero(d)};
     pair.squared = hn::Mul(inverseSquare,
                            hn::MulAdd(pair.x, pair.x, hn::MulAdd(pair.y, pair.y, hn::Mul(pair.z, pair.z))));
+    if (!kGuards) return pair;
     const auto coincident = hn::Lt(pair.squared, hn::Set(d, kCoincident * kCoincident));
     if (HWY_UNLIKELY(!hn::AllFalse(d, coincident))) return partCoincident(pair, scale, index, offsets);
     return pair;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/guard.h"
 #include "core/solver/acceleration.h"
 #include "core/solver/stages.h"
 #include "core/solver/thin_walls.h"
@@ -13,7 +14,7 @@ namespace migiwa {
 
 namespace {
 
-constexpr std::string_view kEffects = "effects";
+using Watch = EffectPipeline::Watch;
 
 /// Whether the places where the step ends are all finite. One that is not makes the sum so.
 bool endsFinite(const StepState& state) {
@@ -39,24 +40,25 @@ void takePositions(StepState& state) {
 
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
-/// stay. `watch(stage)` is called after every stage that may change what the step goes on with.
-template <class Watch>
+/// stay. `watch`, unless it is empty, is called after every stage that may change what the step goes on with.
 void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& watch) {
   const SolverParameters& parameters = state.parameters;
+  const auto watched = [&](std::string_view stage) {
+    if (watch) watch(stage);
+  };
   state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
   if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
-  watch("neighbours");
-  effects.changePrediction(state);
-  watch(kEffects);
+  watched("neighbours");
+  effects.changePrediction(state, watch);
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
-  watch("gamma");
+  watched("gamma");
   state.errors.clear();
   state.iterations = 0;
   state.pressure.begin(state);
   Chebyshev chebyshev;
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
-    watch("lambda");
+    watched("lambda");
     if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
       break;
     if (state.iterations >= parameters.maxIterations) break;
@@ -67,14 +69,13 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
       if (state.boundary.moves()) state.wallWork.iterate(wallPush(state), weight);
       state.pressure.iterate(state, weight);
     });
-    watch("position");
-    effects.changePositions(state, weight);
-    watch(kEffects);
+    watched("position");
+    effects.changePositions(state, weight, watch);
     if (!state.boundary.empty()) {
       state.times.time("projection", [&] { stages::projectNearWalls(state); });
       if (state.gammaMethod != nullptr)
         state.times.time("gamma_refresh", [&] { stages::refreshGamma(state); });
-      watch("projection");
+      watched("projection");
     }
     ++state.iterations;
   }
@@ -85,15 +86,20 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
 namespace {
 
 /// The part of a step that keeps the particles' own positions. Gravity is in the velocities afterwards.
-template <class Watch>
 void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& watch) {
   state.wallWork.clear();
   state.effectWork = 0;
   state.times.time("predict", [&] { stages::predict(state); });
-  watch("predict");
+  if (watch) watch("predict");
   solveConstraint(state, effects, watch);
   state.times.time("velocity", [&] { stages::projectAll(state); });
-  watch("projection");
+  if (watch) watch("projection");
+}
+
+/// Takes back velocities and positions that stages::updateVelocities has kept.
+void undoUpdate(StepState& state) {
+  state.particles.position.swap(state.before.position);
+  state.particles.velocity.swap(state.before.velocity);
 }
 
 /// Takes back what predict() has added.
@@ -124,6 +130,11 @@ class FaultFinder {
              (!corrected || ofLength(state_.gamma, i));
     });
   }
+  void afterVelocities(std::string_view stage) {
+    take(stage,
+         [&](std::size_t i) { return std::isfinite(state_.particles.velocity[i].xyz().squaredNorm()); });
+  }
+  bool found() const { return found_.particles > 0; }
   StepFault result() const { return found_; }
 
  private:
@@ -148,18 +159,19 @@ class FaultFinder {
 }  // namespace
 
 StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
-  predictAndSolve(state, effects, [](std::string_view) {});
+  predictAndSolve(state, effects, {});
   StepRefusal refusal;
   state.times.time("velocity", [&] {
-    refusal.notFinite = !endsFinite(state);
-    if (!refusal.notFinite) refusal.squeeze = findSqueeze(state);
-    if (!refusal.any()) stages::updateVelocities(state);
+    refusal.notFinite = kGuards && !endsFinite(state);
+    if (kGuards && !refusal.notFinite) refusal.squeeze = findSqueeze(state);
+    if (!refusal.any()) stages::updateVelocities(state, kGuards && effects.actsOnVelocities());
   });
-  if (refusal.any()) {
-    undoPrediction(state);
-  } else {
-    effects.changeVelocities(state);
+  if (!refusal.any()) {
+    if (effects.changeVelocities(state, {}) || !kGuards) return refusal;
+    refusal.notFinite = true;
+    undoUpdate(state);
   }
+  undoPrediction(state);
   return refusal;
 }
 
@@ -167,6 +179,12 @@ StepFault findFault(StepState& state, EffectPipeline& effects) {
   FaultFinder finder(state);
   finder.begin();
   predictAndSolve(state, effects, [&](std::string_view stage) { finder.after(stage); });
+  if (!finder.found()) {
+    stages::updateVelocities(state, true);
+    finder.afterVelocities("velocity");
+    effects.changeVelocities(state, [&](std::string_view effect) { finder.afterVelocities(effect); });
+    undoUpdate(state);
+  }
   undoPrediction(state);
   return finder.result();
 }
@@ -182,7 +200,7 @@ void relax(StepState& state) {
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
-    solveConstraint(state, none, [](std::string_view) {});
+    solveConstraint(state, none, {});
     stages::projectAll(state);
     stages::acceptPositions(state);
     // With the neighbours of where particles are now: those of the solve are not, after a long way.

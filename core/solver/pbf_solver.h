@@ -14,7 +14,7 @@ namespace migiwa {
 
 /// Why a step was refused, if it was.
 struct StepRefusal {
-  bool notFinite = false;  ///< a particle would end at a place that is not finite
+  bool notFinite = false;  ///< a particle would end at a place or with a velocity that is not finite
   Squeeze squeeze;         ///< walls leave the fluid no room
   bool any() const { return notFinite || squeeze.found; }
 };
@@ -26,7 +26,7 @@ StepRefusal advanceStep(StepState& state, EffectPipeline& effects);
 
 /// What of a refused step was not finite first.
 struct StepFault {
-  std::string stage;                      ///< the one that left it so
+  std::string stage;                      ///< the one that left it so, or the effect
   std::uint32_t particle = 0;             ///< id of one of them
   long particles = 0;                     ///< how many there are
   std::vector<std::uint32_t> neighbours;  ///< ids of that particle's

@@ -1,3 +1,4 @@
+#include "core/base/guard.h"
 #include "core/solver/stages.h"
 
 namespace migiwa::stages {
@@ -20,6 +21,7 @@ void reorder(std::vector<T>& values, std::vector<T>& spare, const std::vector<st
 void searchNeighbours(StepState& state) {
   const std::size_t n = state.particles.size();
   state.grid.build(std::span(state.current).first(n), state.supportRadius, state.pool);
+  if (kGuards) spreadHeaps(state);
   const std::vector<std::uint32_t>& order = state.grid.order();
   reorder(state.current, state.previous, order, state.pool);
   reorder(state.particles.position, state.previous, order, state.pool);

@@ -8,6 +8,9 @@ namespace migiwa::stages {
 
 /// v += g dt, then x* = x + v dt, kept on the fluid side of the walls.
 void predict(StepState& state);
+/// Moves apart what lies on heaps of many particles, see spread_heaps.cpp; the grid is that of the predicted
+/// positions, and is made anew.
+void spreadHeaps(StepState& state);
 /// Sorts the particles along the grid and lists the neighbours of the predicted positions.
 void searchNeighbours(StepState& state);
 /// gamma and its gradient ([FM] Eq. 6) for the particles near walls.
@@ -23,8 +26,8 @@ void movePositions(StepState& state, float weight = 1);
 void projectNearWalls(StepState& state);
 /// The same for every particle: one that was far from the walls may have crossed one in a single move.
 void projectAll(StepState& state);
-/// v = (x* - x) / dt, x = x*.
-void updateVelocities(StepState& state);
+/// v = (x* - x) / dt, x = x*. What was before is kept in state.before if `keep`.
+void updateVelocities(StepState& state, bool keep);
 /// Takes over the solved positions and leaves the velocities alone.
 void acceptPositions(StepState& state);
 

@@ -42,6 +42,11 @@ void resizeTight(std::vector<T>& values, std::size_t size) {
   values.resize(size);
 }
 
+/// Of the start of a step; velocities with gravity's gain.
+struct BeforeStep {
+  std::vector<Float4> position, velocity;
+};
+
 struct StepState {
   StepState(ThreadPool& threadPool, const Boundary& walls) : pool(threadPool), boundary(walls) {}
 
@@ -65,6 +70,7 @@ struct StepState {
   std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
   std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
   std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
+  BeforeStep before;  ///< to take the step back from effects on velocities; empty where there are none
   std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
   CellGrid grid;
   NeighbourLists neighbours;
@@ -79,6 +85,7 @@ struct StepState {
 
   // Guards that acted in this step.
   long gammaFloored = 0;
+  long spreadParticles = 0;  ///< off heaps, see stages::spreadHeaps
 
   // Energy that the step was given, see core/solver/energy.h.
   WallWork wallWork;

@@ -51,6 +51,7 @@ void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPo
   const std::size_t n = positions.size();
   order_.resize(n);
   keys_.resize(n);
+  fullest_ = 0;
   if (n == 0) {
     start_.assign(2, 0);
     size_[0] = size_[1] = size_[2] = 1;
@@ -82,7 +83,12 @@ void CellGrid::build(std::span<const Float4> positions, float cellSize, ThreadPo
                             static_cast<std::size_t>(size_[2]);
   start_.assign(cells + 1, 0);
   for (const std::uint32_t key : keys_) ++start_[key + 1];
-  for (std::size_t c = 0; c < cells; ++c) start_[c + 1] += start_[c];
+  std::uint32_t fullest = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    fullest = std::max(fullest, start_[c + 1]);
+    start_[c + 1] += start_[c];
+  }
+  fullest_ = fullest;
   // Filling backwards moves each cell's end to its start and keeps the particles of a cell in their order.
   std::vector<std::uint32_t>& place = start_;
   for (std::size_t i = n; i-- > 0;) order_[--place[keys_[i] + 1]] = static_cast<std::uint32_t>(i);

@@ -33,6 +33,8 @@ class CellGrid {
   Places places(const Cell& cell) const { return row(cell.x, cell.x, cell.y, cell.z); }
   /// The places of the cells x0..x1 in row (y, z); empty outside the grid.
   Places row(int x0, int x1, int y, int z) const;
+  /// How many particles the cell with the most of them has.
+  std::uint32_t fullestCell() const { return fullest_; }
   /// The lowest corner of the particles' bounding box.
   Vec3f origin() const { return {originX_, originY_, originZ_}; }
 
@@ -42,6 +44,7 @@ class CellGrid {
   float originX_ = 0, originY_ = 0, originZ_ = 0;
   float inverseCell_ = 1;
   int size_[3] = {1, 1, 1};
+  std::uint32_t fullest_ = 0;
   std::vector<std::uint32_t> start_;  ///< of each cell, and one past the last
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> keys_;

@@ -37,6 +37,7 @@ HardCase everyMethod(HardCase hardCase) {
 
 HardCase coincident(int particles, double until) {
   HardCase hardCase = guarded(timed("coincident", until, 0.5), "started_crowded");
+  if (particles > 1000) hardCase.guards = {"heap", "started_crowded"};
   hardCase.name = "coincident_" + std::to_string(particles);
   hardCase.copies = particles / 2;
   return hardCase;

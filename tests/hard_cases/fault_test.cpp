@@ -1,5 +1,7 @@
 // What is not finite is found in the step that meets it, named, and kept out of the state.
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -97,22 +99,29 @@ INSTANTIATE_TEST_SUITE_P(Injected, Faults, ::testing::Values("particles/position
 /// Spoils one particle, from the given step on.
 class Spoiler final : public Effect {
  public:
-  enum class Where { prediction, iteration };
+  enum class Where { prediction, iteration, velocity };
   Spoiler(Where where, std::uint32_t id, int step)
       : where_(where), id_(id), left_(std::make_shared<int>(step)) {}
   void describe(FieldVisitor&) override {}
   std::unique_ptr<Effect> clone() const override { return std::make_unique<Spoiler>(*this); }
   EffectStages stages() const override {
-    return {.prediction = where_ == Where::prediction, .iteration = where_ == Where::iteration};
+    return {.prediction = where_ == Where::prediction,
+            .iteration = where_ == Where::iteration,
+            .velocity = where_ == Where::velocity};
   }
-  void changePrediction(StepState& state, std::span<EffectBuffer>) const override { spoil(state); }
-  void changePositions(StepState& state, float) const override { spoil(state); }
+  void changePrediction(StepState& state, std::span<EffectBuffer>) const override {
+    spoil(state, state.current);
+  }
+  void changePositions(StepState& state, float) const override { spoil(state, state.current); }
+  void changeVelocities(StepState& state, std::span<EffectBuffer>) const override {
+    spoil(state, state.particles.velocity);
+  }
 
  private:
-  void spoil(StepState& state) const {
+  void spoil(const StepState& state, std::vector<Float4>& vectors) const {
     if (--*left_ > 0) return;
     for (std::size_t i = 0; i < state.particles.size(); ++i)
-      if (state.particles.id[i] == id_) state.current[i].y = std::numeric_limits<float>::quiet_NaN();
+      if (state.particles.id[i] == id_) vectors[i].y = std::numeric_limits<float>::quiet_NaN();
   }
   Where where_;
   std::uint32_t id_;
@@ -125,17 +134,20 @@ TEST_P(SpoiledStages, AreNamedAndTheLastGoodStateStays) {
   constexpr std::uint32_t kId = 117;
   Scene scene = smallDamBreak();
   scene.solver.minIterations = scene.solver.maxIterations = 1;
-  scene.effects.clear();
   Simulation reference(scene, 1);
   for (int frame = 0; frame < 3; ++frame) reference.advanceFrame();
-  scene.effects = {{"spoiler", std::make_shared<Spoiler>(GetParam(), kId, 4)}};
+  // Before the scene's own effect, which hands on what it finds.
+  std::vector<NamedEffect> effects{{"spoiler", std::make_shared<Spoiler>(GetParam(), kId, 4)}};
+  std::copy(scene.effects.begin(), scene.effects.end(), std::back_inserter(effects));
+  scene.effects = effects;
   Simulation simulation(scene, 1);
   for (int frame = 0; frame < 10; ++frame) simulation.advanceFrame();
   ASSERT_TRUE(simulation.stopped());
   EXPECT_EQ(simulation.frame(), 3);
   const Trouble* const trouble = troubleOf(simulation, "nonfinite");
   ASSERT_NE(trouble, nullptr);
-  EXPECT_NE(trouble->detail.find("1 particles are not finite after the stage \"effects\", particle 117"),
+  EXPECT_EQ(trouble->step, 4);
+  EXPECT_NE(trouble->detail.find("1 particles are not finite after the stage \"spoiler\", particle 117"),
             std::string::npos)
       << trouble->detail;
   EXPECT_EQ(trouble->detail.find("neighbours are none"), std::string::npos) << trouble->detail;
@@ -151,7 +163,8 @@ TEST_P(SpoiledStages, AreNamedAndTheLastGoodStateStays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, SpoiledStages,
-                         ::testing::Values(Spoiler::Where::prediction, Spoiler::Where::iteration));
+                         ::testing::Values(Spoiler::Where::prediction, Spoiler::Where::iteration,
+                                           Spoiler::Where::velocity));
 
 }  // namespace
 }  // namespace migiwa::testing

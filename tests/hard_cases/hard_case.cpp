@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "core/boundary/boundary.h"
@@ -98,6 +99,7 @@ Observed observe(const Scene& scene, double until, int threads) {
   seen.rmsSpeed = std::sqrt(squares / std::max<double>(1, static_cast<double>(seen.particles)));
   seen.steps = run.steps;
   if (simulation.stopped()) seen.stopped = simulation.time();
+  seen.divided = run.steps > simulation.frame() * scene.solver.substeps;
   seen.hash = simulation.stateHash();
   for (const Trouble& trouble : run.trouble) seen.guards.push_back(trouble.kind);
   std::sort(seen.guards.begin(), seen.guards.end());
@@ -138,6 +140,32 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
     list.push_back("other guards have acted than expected:" + found);
   }
   return list;
+}
+
+std::string outcome(const HardCase& expected, const Observed& seen) {
+  std::ostringstream text;
+  text << std::setprecision(2);
+  const auto say = [&]() -> std::ostream& { return text.tellp() > 0 ? text << ", " : text; };
+  if (seen.nonfinite > 0) {
+    text << "not finite at step " << seen.steps;
+    return text.str();
+  }
+  if (seen.lost > 0) say() << seen.lost << " particles lost at step " << seen.steps;
+  if (seen.penetration > 0) say() << seen.penetration << " m past a wall";
+  if (seen.lowest < expected.lowest) say() << expected.lowest - seen.lowest << " m too deep";
+  if (!(seen.energyGain <= seen.energyBound)) {
+    say() << "energy ";
+    if (seen.energyBound > 0)
+      text << seen.energyGain / seen.energyBound << " times its bound";
+    else
+      text << "+" << seen.energyGain << " J/kg";
+  }
+  if (!(seen.maxSpeed <= expected.speed)) say() << seen.maxSpeed << " m/s";
+  if (!(seen.meanError <= expected.meanError)) say() << "mean density error " << seen.meanError;
+  if (!(seen.worstError <= expected.worstError)) say() << "density error " << seen.worstError;
+  if (expected.rmsSpeed >= 0 && !(seen.rmsSpeed <= expected.rmsSpeed))
+    say() << "rms speed " << seen.rmsSpeed << " m/s at the end";
+  return text.tellp() > 0 ? text.str() : "holds";
 }
 
 }  // namespace migiwa::testing

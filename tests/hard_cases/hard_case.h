@@ -26,7 +26,8 @@ struct Observed {
   double rmsSpeed = 0;    ///< at the end (m/s)
   double lowest = std::numeric_limits<double>::infinity();  ///< least coordinate y of a particle, ever (m)
   long steps = 0;
-  double stopped = 0;  ///< when the run ended itself (s); 0: it did not
+  double stopped = 0;    ///< when the run ended itself (s); 0: it did not
+  bool divided = false;  ///< some frame took more than its step
   std::size_t particles = 0;
   std::uint64_t hash = 0;
   std::vector<std::string> guards;  ///< kinds of trouble that the run notes
@@ -66,6 +67,9 @@ Observed observe(const Scene& scene, double until, int threads = 1);
 
 /// What does not hold, one sentence each.
 std::vector<std::string> violations(const HardCase& hardCase, const Observed& seen);
+
+/// What a run that may have no guards comes to, in a few words.
+std::string outcome(const HardCase& hardCase, const Observed& seen);
 
 /// The README of this folder.
 std::string tableText();

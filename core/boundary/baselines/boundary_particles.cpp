@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/sph/kernels.h"
 
@@ -17,6 +19,9 @@ namespace {
 constexpr int kTriedAlong = 3, kBlock = 6;
 constexpr double kMostBlocks = 2e7;
 constexpr std::size_t kMostParticles = 20'000'000;
+/// What a block through which a wall goes takes on the way: some sixty candidates in vectors that grow, and
+/// four particles in their cells.
+constexpr double kBytesPerBlock = 2000;
 /// Nearer to each other than this many spacings no two particles lie.
 constexpr float kNearest = 0.99F;
 
@@ -38,12 +43,17 @@ class Candidates {
   Candidates(const Boundary& boundary, float spacing, float depth)
       : boundary_(boundary), spacing_(spacing), depth_(depth), pitch_(spacing / kTriedAlong) {}
 
-  void collect(const Vec3f& corner, std::vector<Vec3f>& layer, std::vector<Vec3f>& thin) const {
+  /// Whether the block at `corner` may have candidates.
+  bool any(const Vec3f& corner) const {
     const float edge = kBlock * pitch_;
     // No wall is nearer to anything in the block than its middle is, less half of its diagonal; a tenth more
     // for distances that are approximate.
     const float middle = boundary_.distance(corner + Vec3f::Constant(0.5F * edge));
-    if (std::abs(middle + 0.5F * depth_) > 1.1F * 0.866F * edge + 0.5F * depth_ + pitch_) return;
+    return std::abs(middle + 0.5F * depth_) <= 1.1F * 0.866F * edge + 0.5F * depth_ + pitch_;
+  }
+
+  void collect(const Vec3f& corner, std::vector<Vec3f>& layer, std::vector<Vec3f>& thin) const {
+    if (!any(corner)) return;
     for (int z = 0; z < kBlock; ++z) {
       for (int y = 0; y < kBlock; ++y) {
         for (int x = 0; x < kBlock; ++x) {
@@ -136,15 +146,23 @@ std::vector<Vec3f> sampleWalls(const Boundary& boundary, const Bounds& region, f
   const auto across = static_cast<std::size_t>(blocks.x()), up = static_cast<std::size_t>(blocks.y());
   const auto slabs = static_cast<std::size_t>(blocks.z());
 
-  std::vector<std::vector<Vec3f>> layers(slabs), thins(slabs);
   const Candidates candidates(boundary, spacing, depth);
-  pool.run(slabs, [&](std::size_t slab) {
-    for (std::size_t k = 0; k < across * up; ++k) {
-      const std::size_t x = k % across, y = k / across;
-      const Vec3d index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(slab));
-      candidates.collect((grown.min + edge * index).cast<float>(), layers[slab], thins[slab]);
-    }
-  });
+  const auto inSlabs = [&](const auto& ofBlock) {
+    pool.run(slabs, [&](std::size_t slab) {
+      for (std::size_t k = 0; k < across * up; ++k) {
+        const std::size_t x = k % across, y = k / across;
+        const Vec3d index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(slab));
+        ofBlock(slab, (grown.min + edge * index).cast<float>());
+      }
+    });
+  };
+  std::vector<std::size_t> blocksNear(slabs, 0);
+  inSlabs([&](std::size_t slab, const Vec3f& corner) { blocksNear[slab] += candidates.any(corner) ? 1U : 0U; });
+  requireMemory(kBytesPerBlock * std::accumulate(blocksNear.begin(), blocksNear.end(), 0.0),
+                "boundary particles", place);
+  std::vector<std::vector<Vec3f>> layers(slabs), thins(slabs);
+  inSlabs(
+      [&](std::size_t slab, const Vec3f& corner) { candidates.collect(corner, layers[slab], thins[slab]); });
 
   SparsePoints points(kNearest * spacing);
   for (const std::vector<Vec3f>& slab : layers) {

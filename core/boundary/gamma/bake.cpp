@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/boundary/gamma/fluid_lattice.h"
 #include "core/boundary/gamma/kernel_stencil.h"
@@ -15,6 +16,8 @@ namespace migiwa {
 namespace {
 
 constexpr int kCells = GammaGrid::kCells;
+/// What filling a grid takes in all, over the grid itself.
+constexpr double kFillingOverGrid = 4;
 constexpr double kMostBlocks = 256.0 * 1024 * 1024;
 
 [[noreturn]] void refuse(const std::string& place, double bytes) {
@@ -88,6 +91,8 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
   grid.origin = settings.region.min.cast<float>();
   if (const double blocks = blocksIn(settings); !(blocks < kMostBlocks))
     refuse(settings.place, sizeof(std::int32_t) * blocks);
+  // The layout's own index of blocks, and those of the splines and the fluid's lattice.
+  requireMemory(3 * sizeof(std::int32_t) * blocksIn(settings), "a grid of gamma", settings.place);
   for (int axis = 0; axis < 3; ++axis)
     grid.size[static_cast<std::size_t>(axis)] =
         static_cast<std::int32_t>(settings.region.size()[axis] / static_cast<double>(grid.blockEdge())) + 1;
@@ -129,6 +134,7 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
     if (block == kUsed) block = used++;
   const double bytes = static_cast<double>(used) * GammaGrid::kBlockFloats * sizeof(float);
   if (bytes > kMostGridBytes) refuse(settings.place, bytes);
+  requireMemory(kFillingOverGrid * bytes, "a grid of gamma", settings.place);
   return grid;
 }
 
