@@ -40,8 +40,14 @@ Image picture(const Simulation& simulation, const Scene& scene, bool panels,
   return viewer.takePicture(simulation.drawnView(), RunStatus{}, kWidth, kHeight);
 }
 
+/// Particles that have moved end at other places with other processors, whose roundings differ: then means
+/// over squares of so many pixels, some particles wide, are compared.
+constexpr int kMovedSquare = 40;
+/// A few squares at the edge of a splash may then be different.
+constexpr double kMovedShare = 0.05;
+
 /// Compares with the golden picture of that name, or writes it. What differs is kept for looking at.
-void compare(const Image& found, const std::string& name) {
+void compare(const Image& found, const std::string& name, bool moved) {
   const fs::path golden = fs::path(MIGIWA_SOURCE_DIR) / "tests" / "golden" / (name + ".png");
   if (updateGolden) {
     fs::create_directories(golden.parent_path());
@@ -50,14 +56,17 @@ void compare(const Image& found, const std::string& name) {
   }
   const std::optional<Image> expected = readPng(golden);
   ASSERT_TRUE(expected) << golden << " is missing; ./run golden draws it";
-  const double share = differentShare(*expected, found);
-  if (share <= kAllowedShare) return;
+  const double share =
+      moved ? differentShare(squareMeans(*expected, kMovedSquare), squareMeans(found, kMovedSquare))
+            : differentShare(*expected, found);
+  const double allowed = moved ? kMovedShare : kAllowedShare;
+  if (share <= allowed) return;
   const fs::path folder = fs::path(MIGIWA_PICTURES) / "golden";
   fs::create_directories(folder);
   writeTextFile(folder / (name + "_found.png"), encodePng(found));
   writeTextFile(folder / (name + "_difference.png"), encodePng(differencePicture(*expected, found)));
-  ADD_FAILURE() << name << ": " << 100 * share << "% of the pixels differ, expected at most "
-                << 100 * kAllowedShare << "%; see " << (folder / (name + "_difference.png"));
+  ADD_FAILURE() << name << ": " << 100 * share << "% of the pixels differ, expected at most " << 100 * allowed
+                << "%; see " << (folder / (name + "_difference.png"));
 }
 
 class GoldenTest : public testing::TestWithParam<fs::path> {};
@@ -69,8 +78,8 @@ TEST_P(GoldenTest, LooksAsItDid) {
     const long frame = simulation.frameAt(std::atof(time));
     while (simulation.frame() < frame && !simulation.stopped()) simulation.advanceFrame();
     const std::string name = simulation.scene().stem() + "_t" + time;
-    compare(picture(simulation, simulation.scene(), false), name);
-    compare(picture(simulation, simulation.scene(), true), name + "_ui");
+    compare(picture(simulation, simulation.scene(), false), name, frame > 0);
+    compare(picture(simulation, simulation.scene(), true), name + "_ui", frame > 0);
   }
 }
 
@@ -91,8 +100,10 @@ TEST_F(GoldenComparison, AcceptsTheSamePicture) {
 TEST_F(GoldenComparison, RefusesAShiftedColorMap) {
   ColorMap shifted = makeColorMap();
   std::rotate(shifted.begin(), shifted.begin() + 24, shifted.end());
-  EXPECT_GT(differentShare(reference_, picture(simulation_, simulation_.scene(), false, shifted)),
-            kAllowedShare);
+  const Image found = picture(simulation_, simulation_.scene(), false, shifted);
+  EXPECT_GT(differentShare(reference_, found), kAllowedShare);
+  EXPECT_GT(differentShare(squareMeans(reference_, kMovedSquare), squareMeans(found, kMovedSquare)),
+            kMovedShare);
 }
 
 TEST_F(GoldenComparison, RefusesAMovedCamera) {
