@@ -38,14 +38,6 @@ std::vector<const FinishedRun*> shownRuns(const StudyPlan& plan, const std::vect
   return shown;
 }
 
-/// The settings that all shown runs have in common, for the title.
-std::string lastSettings(const StudyPlan& plan, const FinishedRun& run) {
-  std::string text;
-  for (std::size_t k = 1; k < plan.axes.size(); ++k)
-    text += ", " + plan.axes[k].name() + " " + plan.axes[k].label(run.values[k]);
-  return text;
-}
-
 void draw(const std::filesystem::path& png, const StudyPlan& plan, const std::vector<FinishedRun>& runs,
           const Picture& picture) {
   const std::vector<const FinishedRun*> shown = shownRuns(plan, runs, picture.curve);
@@ -72,7 +64,7 @@ void draw(const std::filesystem::path& png, const StudyPlan& plan, const std::ve
   script
       << data.str() << "set title "
       << quotedForGnuplot(picture.title + ": " + plan.scene.stem().string() +
-                          lastSettings(plan, *shown.front()))
+                          (plan.axes.size() > 1 ? ", " + plan.describe(shown.front()->values, 1) : ""))
       << " font 'DejaVu Sans,15'\nset grid linecolor rgb '#e0e0e0'\nset key outside right top Left reverse\n"
       << picture.settings << "plot " << plot.str() << '\n';
   drawWithGnuplot(png, kTerminal, script.str());
@@ -93,10 +85,9 @@ Curve energyOverTime(const RunRecord& record) {
   return curve;
 }
 
-/// rho0 g (kPa/m) of the study's scene as it is without what is varied; all runs share it unless gravity or
-/// the rest density vary.
+/// rho0 g (kPa/m) of the study's first run; all share it unless gravity or the rest density vary.
 double pressurePerDepth(const StudyPlan& plan) {
-  const Scene scene = readScene(plan.scene, plan.common);
+  const Scene scene = readScene(plan.scene, plan.overrides(1));
   return 1e-3 * scene.solver.restDensity * scene.gravity.norm();
 }
 
@@ -115,7 +106,7 @@ void plotProfiles(const std::filesystem::path& folder, const StudyPlan& plan,
     for (const EnergySample& sample : run.record.energy) longest = std::max(longest, sample.time);
   }
   Curve atRest;
-  if (!varies(plan, "gravity") && !varies(plan, "rest_density"))
+  if (deepest > 0 && !varies(plan, "gravity") && !varies(plan, "rest_density"))
     atRest = {{0, 0}, {pressurePerDepth(plan) * deepest, deepest}};
   draw(folder / "pressure_profile.png", plan, runs,
        {"Pressure over depth",

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <sstream>
 
-
 namespace migiwa {
 
 namespace {
@@ -13,13 +12,6 @@ std::string digits(double value, const char* format = "%.3g") {
   char text[32];
   std::snprintf(text, sizeof text, format, value);
   return text;
-}
-
-std::string nameOf(const StudyPlan& plan, const FinishedRun& run) {
-  std::string name;
-  for (std::size_t k = 0; k < plan.axes.size(); ++k)
-    name += (k > 0 ? ", " : "") + plan.axes[k].name() + " " + plan.axes[k].label(run.values[k]);
-  return name;
 }
 
 /// Largest over smallest time of a run's repetitions, less 1; of all runs the largest.
@@ -48,11 +40,11 @@ void describeFront(std::ostream& out, const StudyPlan& plan, const std::vector<F
   const auto error = [&](std::size_t at) { return *measure.error(runs[at].record); };
   const auto cost = [&](std::size_t at) { return runCost(runs[at].record); };
   const std::size_t cheapest = front.front(), best = front.back();
-  out << "The most exact is run " << runs[best].run << " (" << nameOf(plan, runs[best])
+  out << "The most exact is run " << runs[best].run << " (" << plan.describe(runs[best].values)
       << "): " << digits(error(best)) << unit << " for " << digits(cost(best), "%.0f")
       << " ms a simulated second.";
   if (best != cheapest && cost(cheapest) > 0) {
-    out << " The cheapest is run " << runs[cheapest].run << " (" << nameOf(plan, runs[cheapest])
+    out << " The cheapest is run " << runs[cheapest].run << " (" << plan.describe(runs[cheapest].values)
         << "): " << digits(cost(cheapest), "%.0f") << " ms; the best accuracy costs "
         << digits(cost(best) / cost(cheapest), "%.2f") << " times as much";
     if (error(best) > 0) out << " and is " << digits(error(cheapest) / error(best)) << " times as exact";
@@ -63,8 +55,9 @@ void describeFront(std::ostream& out, const StudyPlan& plan, const std::vector<F
   out << "\n\n| on the front | ms a simulated second | ms once | " << tableCell(measure.title)
       << " |\n|---|---|---|---|\n";
   for (const std::size_t at : front)
-    out << "| run " << runs[at].run << ": " << nameOf(plan, runs[at]) << " | " << digits(cost(at), "%.0f")
-        << " | " << digits(runs[at].record.measure("precomputation_ms").value_or(0), "%.0f") << " | "
+    out << "| run " << runs[at].run << ": " << plan.describe(runs[at].values) << " | "
+        << digits(cost(at), "%.0f") << " | "
+        << digits(runs[at].record.measure("precomputation_ms").value_or(0), "%.0f") << " | "
         << digits(error(at)) << unit << " |\n";
 }
 
@@ -98,7 +91,7 @@ std::string studySummary(const StudyPlan& plan, const std::vector<FinishedRun>& 
          "as if for the first time.\n";
   for (const FinishedRun& run : runs)
     if (!run.record.trouble.empty())
-      out << "\nRun " << run.run << " (" << nameOf(plan, run)
+      out << "\nRun " << run.run << " (" << plan.describe(run.values)
           << ") failed and is on no front: " << run.record.trouble << "\n";
   for (const AccuracyMeasure& measure : accuracyMeasures()) describeFront(out, plan, runs, measure);
   return out.str();

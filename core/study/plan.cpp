@@ -55,6 +55,13 @@ std::vector<std::string> StudyPlan::values(std::size_t run) const {
   return result;
 }
 
+std::string StudyPlan::describe(const std::vector<std::string>& values, std::size_t first) const {
+  std::string text;
+  for (std::size_t k = first; k < axes.size(); ++k)
+    text += (k > first ? ", " : "") + axes[k].name() + " " + axes[k].label(values[k]);
+  return text;
+}
+
 std::vector<Override> StudyPlan::overrides(std::size_t run) const {
   std::vector<Override> result = common;
   const std::vector<std::string> chosen = values(run);

@@ -36,6 +36,8 @@ struct StudyPlan {
   /// The values of a run, one for each axis. The last axis changes fastest.
   std::vector<std::string> values(std::size_t run) const;
   std::vector<Override> overrides(std::size_t run) const;
+  /// Names and labels of a run's values, from axis `first` on, for people to read.
+  std::string describe(const std::vector<std::string>& values, std::size_t first = 0) const;
 };
 
 /// Tells the runs of one study from those of any other: a checksum of every value in force, of the content of

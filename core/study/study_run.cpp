@@ -65,9 +65,10 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
                           const std::function<void(double)>& eachFrame) {
   RunRecord record;
   record.fingerprint = runFingerprint(plan, run);
-  resetPeakMemory();
   double preparation = 0;
   const std::unique_ptr<Simulation> made = prepared(plan, run, threads, preparation);
+  // Fits and grids that are made anew take memory for a while that a start with kept ones does not.
+  resetPeakMemory();
   Simulation& simulation = *made;
   ReferenceSampler reference(threads);
   PressureProfile pressure;
