@@ -15,11 +15,32 @@ double storedEnergy(const StepState& state, double dt) {
   return 0.5 * way2 / (dt * dt);
 }
 
-void EnergyBalance::begin(const EnergySums& sums, const StepState& state) {
+void EnergyBalance::begin(const EnergySums& sums, const StepState& state, double height) {
+  lift = 0.5 * state.errors.back().max * static_cast<double>(state.gravity.norm()) * height;
   kinetic = sums.kinetic;
   potential = sums.potential(state.gravity.cast<double>());
   start = kinetic + potential;
   sample(0, sums.particles);
+}
+
+double EnergyBalance::bySolver(const StepState& state, const EnergySums& before, const EnergySums& now,
+                               double dt) {
+  const Vec3d gravity = state.gravity.cast<double>();
+  return now.halfStepOn(gravity, dt) - before.halfStepOn(gravity, dt) - state.wallWork.sum() / dt -
+         state.effectWork;
+}
+
+double EnergyBalance::excess(const StepState& state, const EnergySums& before, const EnergySums& now,
+                             double dt, double rounding) const {
+  const double gained = bySolver(state, before, now, dt),
+               speedUp = dt * static_cast<double>(state.gravity.norm());
+  const auto count = static_cast<double>(now.particles);
+  // Stored energy is an estimate within a factor of two.
+  const double allowed = count * (2 * stored + lift);
+  const double slack = count * (0.5 * speedUp * speedUp + rounding);
+  constexpr double kOfKinetic = 0.05;
+  const double most = std::min(allowed - solver, allowed + kOfKinetic * before.kinetic);
+  return gained > std::max(most, 0.0) + slack ? gained - std::max(most, 0.0) : 0;
 }
 
 void EnergyBalance::record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
@@ -30,7 +51,7 @@ void EnergyBalance::record(const StepState& state, const EnergySums& before, con
   potential = now.potential(gravity);
   walls += byWalls;
   effects += state.effectWork;
-  solver += now.halfStepOn(gravity, dt) - before.halfStepOn(gravity, dt) - byWalls - state.effectWork;
+  solver += bySolver(state, before, now, dt);
   if (now.particles > 0) mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
   sample(time, now.particles);
 }
@@ -58,6 +79,7 @@ void EnergyBalance::visit(StateVisitor& visitor) {
   visitor.number("/energy/solver", solver);
   visitor.number("/energy/most_gained", mostGained);
   visitor.number("/energy/stored", stored);
+  visitor.number("/energy/lift", lift);
   std::int64_t stride = stride_, until = untilSample_;
   visitor.integer("/energy/stride", stride);
   visitor.integer("/energy/until_sample", until);

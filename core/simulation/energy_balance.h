@@ -31,12 +31,20 @@ struct EnergyBalance {
   double solver = 0;      ///< what the solver has changed so far: negative, for it dissipates
   double mostGained = 0;  ///< the largest that `solver` over the number of particles ever was (m^2/s^2)
   double stored = 0;      ///< at the start, see storedEnergy()
+  double lift = 0;  ///< by which water that starts too dense lifts itself as it swells (m^2/s^2, a mean)
   std::vector<EnergySample> history;  ///< at most kMostSamples of them, evenly spread over the steps
 
   static constexpr std::size_t kMostSamples = 256;
 
   /// The state before the first step.
-  void begin(const EnergySums& sums, const StepState& state);
+  /// `height` (m) is that of the fluid along gravity.
+  void begin(const EnergySums& sums, const StepState& state, double height);
+  /// What a step of `dt` (s) has added beyond what it may (m^2/s^2, a sum over the particles), 0 where it
+  /// kept within. It may add what its start had stored and has not given yet, what gravity gives a particle
+  /// in one step at a wall, and `rounding` (m^2/s^2, a mean over particles); and no more than a twentieth of
+  /// the kinetic energy that there is, however much has been dissipated before.
+  double excess(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
+                double rounding) const;
   /// A step of `dt` (s) that came from `before`, with what emitters gave at its start.
   void record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
               double time);
@@ -44,6 +52,8 @@ struct EnergyBalance {
   void visit(StateVisitor& visitor);
 
  private:
+  /// What the step changed that neither walls nor effects did.
+  static double bySolver(const StepState& state, const EnergySums& before, const EnergySums& now, double dt);
   void sample(double time, long particles);
 
   long stride_ = 1, untilSample_ = 0;

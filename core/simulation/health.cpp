@@ -8,7 +8,10 @@ namespace migiwa {
 HealthLimits healthLimits(const Scene& scene) {
   HealthLimits limits;
   limits.mostPenetration = scene.particleSpacing;
-  if (const Bounds bounds = scene.bounds(); !bounds.empty()) limits.centre = bounds.center().cast<float>();
+  if (const Bounds bounds = scene.bounds(); !bounds.empty()) {
+    limits.centre = bounds.center().cast<float>();
+    limits.farthest = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).norm();
+  }
   // Far enough for any splash to come back, near enough that what fell through a hole is found.
   if (!scene.surfaces.empty()) {
     const Bounds bounds = scene.bounds();

@@ -10,6 +10,7 @@ namespace migiwa {
 struct HealthLimits {
   double mostPenetration = 0;    ///< past a wall by more than this (m) is lost: one spacing
   Bounds scene;                  ///< out of this is lost; empty for a scene without walls
+  double farthest = 0;           ///< coordinate of the scene (m), whose rounding velocities bear
   Vec3f centre = Vec3f::Zero();  ///< of the scene at its start: where potential energy is zero (m)
 };
 HealthLimits healthLimits(const Scene& scene);

@@ -54,6 +54,7 @@ bool EffectPipeline::changeVelocities(StepState& state, const Watch& watch) {
       state, velocity_, velocityEnergy,
       [&](const Effect& effect) { effect.changeVelocities(state, buffers_); }, watch);
   const bool finite = std::isfinite(state.effectWork);
+  state.velocityEffectWork = state.effectWork;
   state.effectWork += before;
   return finite;
 }

@@ -164,7 +164,7 @@ StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
   state.times.time("velocity", [&] {
     refusal.notFinite = kGuards && !endsFinite(state);
     if (kGuards && !refusal.notFinite) refusal.squeeze = findSqueeze(state);
-    if (!refusal.any()) stages::updateVelocities(state, kGuards && effects.actsOnVelocities());
+    if (!refusal.any()) stages::updateVelocities(state, kGuards);
   });
   if (!refusal.any()) {
     if (effects.changeVelocities(state, {}) || !kGuards) return refusal;

@@ -89,7 +89,8 @@ struct StepState {
 
   // Energy that the step was given, see core/solver/energy.h.
   WallWork wallWork;
-  double effectWork = 0;  ///< by the effects (m^2/s^2); friction at moving walls included
+  double effectWork = 0;          ///< by the effects (m^2/s^2); friction at moving walls included
+  double velocityEffectWork = 0;  ///< the part of those on velocities (m^2/s^2)
 
   PressureSum pressure;
 

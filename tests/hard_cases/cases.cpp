@@ -112,8 +112,12 @@ std::vector<HardCase> hardCases() {
   cases.push_back(coincident(100, 0.5));
   cases.push_back(coincident(2000, 0.1));
   cases.push_back(coincident(8000, 0.025));
-  for (const char* scene : {"lone_corner", "lone_edge", "lone_wedge"})
+  for (const char* scene : {"lone_corner", "lone_edge"})
     cases.push_back(everyMethod(resting(timed(scene, 1, 4.5), 1e-3)));
+  // What the two walls push it by as it bounces at the tip is more than gravity gives it in a step.
+  cases.push_back(everyMethod(resting(guarded(timed("lone_wedge", 1, 4.5), "energy_held"), 1e-3)));
+  // Twice the speed of the approach.
+  cases.push_back(guarded(timed("head_on", 0.1, 40), "energy_held"));
   addImpacts(cases);
   addGaps(cases);
   // The block, 0.2 m wide, falls 1.06 m, to where the walls leave room for one particle, 0.05 m: 4.55 m/s,
