@@ -7,6 +7,10 @@
 include(GoogleTest)
 find_package(GTest REQUIRED)
 
+set(migiwa_test_cache ${CMAKE_BINARY_DIR}/test_cache)
+add_test(NAME test_cache_emptied COMMAND ${CMAKE_COMMAND} -E rm -rf ${migiwa_test_cache})
+set_tests_properties(test_cache_emptied PROPERTIES FIXTURES_SETUP test_cache)
+
 function(migiwa_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LABELS;LINK")
   if(NOT arg_SOURCES OR NOT arg_LABELS OR arg_UNPARSED_ARGUMENTS)
@@ -21,11 +25,12 @@ function(migiwa_add_test name)
   target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   migiwa_target_options(${name})
 
-  # Tests make their grids of gamma themselves: one that an earlier build has left would be no test of this one.
+  # Grids of gamma and fits of meshes are kept for one run of ctest: the first test that asks makes them, and none is left
+  # from an earlier run, which would be no test of this one.
   # Labels are set by a file of our own that ctest reads after the discovery's: on its way through the discovery a list
   # of several labels would fall apart.
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT MIGIWA_CACHE=/dev/null)
+    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "MIGIWA_CACHE=${migiwa_test_cache}" FIXTURES_REQUIRED test_cache)
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   file(WRITE ${labels_file}
     "foreach(test IN LISTS ${name}_list)\n  set_tests_properties(\${test} PROPERTIES LABELS \"${arg_LABELS}\")\nendforeach()\n")

@@ -5,6 +5,7 @@
 //   gaining speed (core/simulation/simulation.cpp);
 //   a move may not pass through thin or moving walls (same);
 //   heaps of many particles are spread before their pairs are listed (core/solver/spread_heaps.cpp);
+//   a wall that stands still gives no speed (core/solver/projection_stage.cpp);
 //   what a step adds to the energy from nothing is taken back (core/solver/hold_energy.h);
 //   a step that ends with what is not finite is refused (core/solver/pbf_solver.cpp);
 //   one that walls leave no solution is refused (core/solver/squeeze.h, same);

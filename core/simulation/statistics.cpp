@@ -49,6 +49,11 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
     note("gamma_floor", steps,
          std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
   }
+  if (state.wallJumps > 0) {
+    note("wall_jump", steps,
+         std::to_string(state.wallJumps) +
+             " times a wall pushed a particle further than it had come; no speed came of it");
+  }
   noteSpread(state, steps);
   if (health.nonfinite > 0) {
     note("nonfinite", steps,

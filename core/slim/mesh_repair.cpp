@@ -197,6 +197,16 @@ bool contains(const TriangleMesh& mesh, const Part& part, const Vec3d& p) {
   return crossings % 2 == 1;
 }
 
+/// Whether the part lies in `other` as a whole, as far as some of its vertices tell: parts that cross do not.
+bool liesWithin(const TriangleMesh& mesh, const Part& part, const Part& other) {
+  constexpr std::size_t kVertices = 32;
+  const std::size_t stride = std::max<std::size_t>(1, part.triangles.size() / kVertices);
+  for (std::size_t k = 0; k < part.triangles.size(); k += stride)
+    if (!contains(mesh, other, mesh.vertices[mesh.triangles[part.triangles[k]][0]].cast<double>()))
+      return false;
+  return true;
+}
+
 /// Beyond this many parts their nesting is not looked at: that takes the square of their number.
 constexpr std::size_t kMostNestedParts = 200;
 
@@ -207,9 +217,8 @@ void orient(TriangleMesh& mesh, std::vector<Part>& parts, bool closed, std::vect
     bool flip = false;
     if (closed) {
       int depth = 0;
-      const Vec3d p = mesh.vertices[mesh.triangles[part.triangles[0]][0]].cast<double>();
       for (std::size_t other = 0; other < parts.size() && parts.size() <= kMostNestedParts; ++other)
-        if (other != k && contains(mesh, parts[other], p)) ++depth;
+        if (other != k && liesWithin(mesh, part, parts[other])) ++depth;
       // A part within another one is the wall of a hollow.
       flip = (signedVolume(mesh, part) < 0) != (depth % 2 == 1);
     } else {
@@ -242,9 +251,10 @@ bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::s
   const std::size_t open = edges.open(mesh, hole);
   orient(mesh, parts, open == 0, notes);
   if (open > 0)
-    notes.push_back("the mesh is open: " + counted(open, "edge has", "edges have") +
-                    " a triangle on one side only, the first near " + at(hole) +
-                    "; inside and outside are known near its surface only");
+    notes.push_back(
+        "the mesh is open: " + counted(open, "edge has", "edges have") +
+        " a triangle on one side only, the first near " + at(hole) +
+        "; inside and outside are known near its surface only, by how most of its triangles are wound");
   return open == 0;
 }
 

@@ -197,6 +197,8 @@ void relax(StepState& state) {
   EffectPipeline none;
   // Where the step is to go by another form, this is no step: only the true gradient gets fluid out of walls.
   const PositionStep form = std::exchange(state.parameters.positionStep, PositionStep::gradient);
+  // Nothing here gains speed anyway.
+  const long jumps = state.wallJumps;
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
@@ -208,6 +210,7 @@ void relax(StepState& state) {
     if (state.errors.back().max <= kCalm) break;
   }
   state.parameters.positionStep = form;
+  state.wallJumps = jumps;
 }
 
 long stabilise(StepState& state) {

@@ -1,3 +1,4 @@
+#include "core/base/guard.h"
 #include "core/solver/clearance.h"
 #include "core/solver/stages.h"
 #include "core/solver/thin_walls.h"
@@ -9,34 +10,61 @@ namespace {
 /// What lies right at the margin a shape may still move by the last bit: so much more is certainly enough.
 constexpr float kAmple = 1.001F;
 
+/// Share of the margin by which a particle at a wall may stand too near to it.
+constexpr float kRounding = 0.01F;
+
+/// What walls did to particles.
+struct Push {
+  double work = 0;  ///< how far times the velocity of the wall there (m^2/s), 0 where no wall moves
+  long jumps = 0;   ///< particles that were pushed further than they had come
+
+  friend Push operator+(const Push& a, const Push& b) { return {a.work + b.work, a.jumps + b.jumps}; }
+};
+
+/// A wall that stands still takes speed and gives none: it pushes no further than a particle has come since
+/// the step began. Where distances jump, at the rim of an open SLIM surface, or two walls leave no room, it
+/// does; what is too much of that leads from where the particle began, so that no speed comes of it. Returns
+/// whether.
+bool withholdJump(StepState& state, std::size_t i, const Vec3f& came, const Vec3f& pushed) {
+  Float4& began = state.particles.position[i];
+  const float push = (pushed - came).norm();
+  const float most = kSteepestDistance * (came - began.xyz()).norm() + kRounding * state.wallMargin();
+  if (push <= most) return false;
+  began = Float4(Vec3f(began.xyz() + (1 - most / push) * (pushed - came)));
+  return true;
+}
+
 /// Puts particle i, which came from `from`, where it was at the start of the step or since, back on the fluid
-/// side. Returns how far times the velocity of the wall there (m^2/s), 0 where no wall moves.
-double project(StepState& state, std::size_t i, const Float4& from, bool stepBegan) {
+/// side.
+Push project(StepState& state, std::size_t i, const Float4& from, bool stepBegan) {
   Vec3f p = state.current[i].xyz();
   // How far it may have to be from walls for them not to be in its way.
   const float onTheWay = state.barringWalls.empty() ? 0 : kSteepestDistance * (p - from.xyz()).norm();
-  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return 0;
-  if (!p.allFinite()) return 0;  // no wall has a place for it; the step is about to be refused
+  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return {};
+  if (!p.allFinite()) return {};  // no wall has a place for it; the step is about to be refused
   const Vec3f came = p;
   if (!state.barringWalls.empty())
     p = heldBack(state.barringWalls, from.xyz(), stepBegan, p, state.wallMargin());
   state.boundary.project(p, state.wallMargin());
   state.current[i].setXyz(p);
-  if (!state.boundary.moves() || p == came) return 0;
-  return static_cast<double>(state.boundary.wallVelocity(p).dot(p - came));
+  if (p == came) return {};
+  if (state.boundary.moves()) return {static_cast<double>(state.boundary.wallVelocity(p).dot(p - came)), 0};
+  return {0, kGuards && withholdJump(state, i, came, p) ? 1 : 0};
 }
 
-/// Calls one(k) for all k < count, and books the walls' work that it returns.
+/// Calls one(k) for all k < count, and books the walls' work and the jumps that it returns.
 template <class One>
 void projectEach(StepState& state, std::size_t count, const One& one) {
-  state.wallWork.add(parallelReduce(
-      state.pool, count, 0.0,
+  const Push all = parallelReduce(
+      state.pool, count, Push{},
       [&](std::size_t begin, std::size_t end) {
-        double work = 0;
-        for (std::size_t k = begin; k < end; ++k) work += one(k);
-        return work;
+        Push part;
+        for (std::size_t k = begin; k < end; ++k) part = part + one(k);
+        return part;
       },
-      [](double a, double b) { return a + b; }));
+      [](const Push& a, const Push& b) { return a + b; });
+  state.wallWork.add(all.work);
+  state.wallJumps += all.jumps;
 }
 
 }  // namespace

@@ -85,6 +85,7 @@ struct StepState {
 
   // Guards that acted in this step.
   long gammaFloored = 0;
+  long wallJumps = 0;        ///< pushes by walls that were kept from giving speed
   long spreadParticles = 0;  ///< off heaps, see stages::spreadHeaps
 
   // Energy that the step was given, see core/solver/energy.h.

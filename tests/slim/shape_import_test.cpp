@@ -104,6 +104,19 @@ TEST_F(ShapeImport, AHollowFacesItsInside) {
   EXPECT_NEAR(volumeOf(shape.mesh), 26, 1e-5);
 }
 
+TEST_F(ShapeImport, PartsThatCrossAreNoHollows) {
+  // The first corner of the second cube lies in the first cube.
+  std::string second;
+  for (const char* corner : {"0.5 0.4 0.3", "1.5 0.4 0.3", "1.5 1.4 0.3", "0.5 1.4 0.3", "0.5 0.4 1.3",
+                             "1.5 0.4 1.3", "1.5 1.4 1.3", "0.5 1.4 1.3"})
+    second += std::string("v ") + corner + "\n";
+  const std::string faces =
+      "f 9 12 11 10\nf 13 14 15 16\nf 9 10 14 13\nf 11 12 16 15\nf 10 11 15 14\nf 9 13 16 12\n";
+  const ImportedShape shape = importShape(write("crossing.obj", kCubeVertices + second + kCubeFaces + faces));
+  EXPECT_NEAR(volumeOf(shape.mesh), 2, 1e-5);
+  EXPECT_TRUE(shape.notes.empty());
+}
+
 TEST_F(ShapeImport, LeavesOutWhatIsThereTwiceOrFlat) {
   const ImportedShape shape =
       importShape(write("twice.obj", kCubeVertices + kCubeFaces + "f 5 6 7\nf 1 1 2\n"));
