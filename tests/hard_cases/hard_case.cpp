@@ -127,7 +127,7 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
   // Without walls nothing but gravity changes the momentum.
   if (seen.particles > 0 && !std::isfinite(seen.nearest))
     most("momentum (m/s)", seen.momentum, 1e-4 * std::max(seen.maxSpeed, 1.0));
-  if (const Fill& fill = expected.fill; fill.below > 0) {
+  if (const Fill& fill = expected.fill; fill.layer > 0) {
     double filled = 0;
     for (const Float4& p : seen.end.view().positions) filled += static_cast<double>(p.y) < fill.below ? 1 : 0;
     most("particles more or less than fit below", std::abs(filled - fill.particles), fill.layer);

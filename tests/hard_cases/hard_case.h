@@ -36,9 +36,9 @@ struct Observed {
 
 /// Particles below a height at the end, where so many fit.
 struct Fill {
-  double below = 0;      ///< height (m); 0: nothing is stated
+  double below = 0;      ///< height (m)
   double particles = 0;  ///< that fit there, by the volume
-  double layer = 0;      ///< particles in a layer one spacing high: it may be so many more or less
+  double layer = 0;  ///< it may be so many more or less, as in a layer one spacing high; 0: nothing is stated
 };
 
 struct HardCase {
