@@ -39,7 +39,11 @@ double EnergyBalance::excess(const StepState& state, const EnergySums& before, c
   const double allowed = count * (2 * stored + lift);
   const double slack = count * (0.5 * speedUp * speedUp + rounding);
   constexpr double kOfKinetic = 0.05;
-  const double most = std::min(allowed - solver, allowed + kOfKinetic * before.kinetic);
+  // Fluid no faster than gravity makes it in ten steps is at rest, and trembles where the tolerance is tight,
+  // for as long as effects brake it.
+  const bool trembles = before.kinetic <= count * 0.5 * (10 * speedUp) * (10 * speedUp);
+  const double risen = trembles ? solver + std::min(effects, 0.0) : solver;
+  const double most = std::min(allowed - risen, allowed + kOfKinetic * before.kinetic);
   return gained > std::max(most, 0.0) + slack ? gained - std::max(most, 0.0) : 0;
 }
 

@@ -42,7 +42,8 @@ struct EnergyBalance {
   /// What a step of `dt` (s) has added beyond what it may (m^2/s^2, a sum over the particles), 0 where it
   /// kept within. It may add what its start had stored and has not given yet, what gravity gives a particle
   /// in one step at a wall, and `rounding` (m^2/s^2, a mean over particles); and no more than a twentieth of
-  /// the kinetic energy that there is, however much has been dissipated before.
+  /// the kinetic energy that there is, however much has been dissipated before. What effects have taken
+  /// counts for fluid at rest only, whose trembling they brake.
   double excess(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
                 double rounding) const;
   /// A step of `dt` (s) that came from `before`, with what emitters gave at its start.
