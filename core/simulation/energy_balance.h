@@ -36,8 +36,7 @@ struct EnergyBalance {
 
   static constexpr std::size_t kMostSamples = 256;
 
-  /// The state before the first step.
-  /// `height` (m) is that of the fluid along gravity.
+  /// The state before the first step; `height` (m) is that of the fluid along gravity.
   void begin(const EnergySums& sums, const StepState& state, double height);
   /// What a step of `dt` (s) has added beyond what it may (m^2/s^2, a sum over the particles), 0 where it
   /// kept within. It may add what its start had stored and has not given yet, what gravity gives a particle

@@ -70,7 +70,7 @@ struct StepState {
   std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
   std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
   std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
-  BeforeStep before;  ///< to take the step back from effects on velocities; empty where there are none
+  BeforeStep before;             ///< to take back the step, or energy that it made; empty without guards
   std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
   CellGrid grid;
   NeighbourLists neighbours;

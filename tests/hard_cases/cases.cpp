@@ -1,5 +1,6 @@
 // The table of cases. Bounds are what mechanics says of the scene; that of the energy follows from the start.
 #include <cstdlib>
+#include <numbers>
 
 #include "tests/hard_cases/hard_case.h"
 
@@ -107,7 +108,9 @@ void addSolverCases(std::vector<HardCase>& cases) {
 void addBrokenMeshes(std::vector<HardCase>& cases) {
   // What leaps over the rim, 2 % of the water at most, falls 0.8 m to the floor of the tank; the bowl keeps
   // the rest.
-  constexpr double kFall = 4, kWater = 739;
+  constexpr double kFall = 4, kRadius = 0.28, kSpacing = 0.05;
+  constexpr double kWater =
+      4.0 / 3 * std::numbers::pi * kRadius * kRadius * kRadius / (kSpacing * kSpacing * kSpacing);
   const auto bowl = [](const char* scene, double speed) {
     HardCase hardCase = timed(scene, 2, speed);
     hardCase.fill = {-0.6, 0, 0.02 * kWater};

@@ -38,7 +38,6 @@ class FinishedStep {
     }
   }
 
-  StepState& state() { return state_; }
   double hold(double excess) {
     EffectPipeline none;
     return holdEnergy(state_, none, excess);

@@ -49,7 +49,7 @@ def write(path, about, vertices, triangles):
 
 
 def holed(vertices, triangles):
-    """A patch of the inner side, 0.2 m wide at the bottom, is missing."""
+    """A patch of the inner side, 0.3 m wide at the bottom, is missing."""
     def inner_bottom(k):
         x, y, z = vertices[k]
         return math.dist((x, y, z), (0, 0, 0)) < 0.5 * (INNER + OUTER) and math.hypot(x, z) < 0.12

@@ -94,7 +94,7 @@ constexpr const char* kShort = R"(
   section that the water has to pass shrinks to a particle's. With half the spacing it shrinks twice as far, and they reach
   31 m/s; with shorter time steps it is 11 to 19 m/s. They take their energy from the others.
 - In `slim_shell_holed` the surface ends at the hole's edge, and inside and outside change places from point to point: single
-  particles leave with up to 5.7 m/s, where nothing falls faster than 4 m/s. Energy is held all the same. An open mesh that is
+  particles leave it faster than anything falls (4 m/s). Energy is held all the same. An open mesh that is
   wound inwards as a whole takes all water for solid, and only the warning says so.
 - Walls that move are no `wall_jump`: what they push may go faster than it came.
 )";
