@@ -107,11 +107,19 @@ int parseAndRun(std::vector<std::string> arguments) {
   return chosen->run(commonOptions(words));
 }
 
+/// What was printed may still be in memory, and may not fit where it goes.
+void requirePrinted() {
+  if (!std::cout.flush())
+    throw InputError("standard output", "could not be written to its end: is its disk full?");
+}
+
 }  // namespace
 
 int runCommandLine(std::vector<std::string> arguments) {
   try {
-    return parseAndRun(std::move(arguments));
+    const int code = parseAndRun(std::move(arguments));
+    requirePrinted();
+    return code;
   } catch (const InputError& error) {
     for (const Fault& fault : error.faults()) std::cerr << fault.text() << '\n';
     return kBadInput;

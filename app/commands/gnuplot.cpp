@@ -1,38 +1,49 @@
 #include "app/commands/gnuplot.h"
 
+#include <array>
 #include <cstdio>
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/io/output_file.h"
 
 namespace migiwa {
 
 namespace {
 
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
 struct PipeCloser {
   void operator()(std::FILE* pipe) const { pclose(pipe); }
 };
+
+/// What gnuplot prints for a script; empty when it is not there or fails. The picture comes back through a
+/// pipe, since of a file that it cannot finish gnuplot says nothing.
+std::string printed(const std::string& text) {
+  // Without a name: gone when it is closed, whatever happens.
+  const std::unique_ptr<std::FILE, FileCloser> script(std::tmpfile());
+  if (!script || std::fwrite(text.data(), 1, text.size(), script.get()) != text.size() ||
+      std::fflush(script.get()) != 0)
+    return {};
+  const std::string command = "gnuplot 2>/dev/null </dev/fd/" + std::to_string(fileno(script.get()));
+  std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
+  if (!pipe) return {};
+  std::string result;
+  std::array<char, 1 << 16> piece;
+  while (const std::size_t size = std::fread(piece.data(), 1, piece.size(), pipe.get()))
+    result.append(piece.data(), size);
+  return pclose(pipe.release()) == 0 ? result : std::string();
+}
 
 }  // namespace
 
 void drawWithGnuplot(const std::filesystem::path& png, const std::string& terminal,
                      const std::string& script) {
-  const std::filesystem::path temporary = png.string() + ".tmp";
-  const std::string text =
-      "set terminal " + terminal + "\nset output '" + temporary.string() + "'\n" + script;
-  int status = -1;
-  {
-    std::unique_ptr<std::FILE, PipeCloser> pipe(popen("gnuplot 2>/dev/null", "w"));
-    if (pipe) {
-      std::fwrite(text.data(), 1, text.size(), pipe.get());
-      status = pclose(pipe.release());
-    }
-  }
-  if (status != 0 || !std::filesystem::exists(temporary)) {
-    std::filesystem::remove(temporary);
+  const std::string picture = printed("set terminal " + terminal + "\n" + script);
+  if (picture.empty())
     throw MissingError(png.string() + " needs gnuplot; install gnuplot-nox (apt-get install gnuplot-nox)");
-  }
-  std::filesystem::rename(temporary, png);
+  writeTextFile(png, picture);
 }
 
 }  // namespace migiwa

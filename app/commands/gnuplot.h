@@ -6,8 +6,8 @@
 
 namespace migiwa {
 
-/// Runs a script after `set terminal TERMINAL` and writes its picture to `png`, under a temporary name until
-/// it is whole. Throws MissingError when gnuplot is not there or fails.
+/// Runs a script after `set terminal TERMINAL` and writes its picture to `png`, whole or not at all. Throws
+/// MissingError when gnuplot is not there or fails, InputError when the picture cannot be written.
 void drawWithGnuplot(const std::filesystem::path& png, const std::string& terminal,
                      const std::string& script);
 

@@ -62,8 +62,8 @@ class GammaCache : public testing::Test {
   std::string before_;
 };
 
-const Surfaces kBall{std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.21, Sphere::Fluid::inside)};
-const Vec3f kNearWall(0.1F, 0.17F, 0);
+const Surfaces kBall{std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.12, Sphere::Fluid::inside)};
+const Vec3f kNearWall(0.1F, 0.08F, 0);
 
 TEST_F(GammaCache, TheSecondStartReadsTheSameGrid) {
   const Boundary ball(kBall);
@@ -78,9 +78,9 @@ TEST_F(GammaCache, OtherParametersHaveGridsOfTheirOwn) {
   baked(Boundary(kBall));
   EXPECT_TRUE(made(baked(Boundary(kBall), KernelType::spiky)));
   EXPECT_TRUE(made(baked(Boundary(kBall), KernelType::poly6, 0.11F)));
-  for (const auto& other : {std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.2100001, Sphere::Fluid::inside),
-                            std::make_shared<Sphere>(Vec3d(0.1, 0, 1e-9), 0.21, Sphere::Fluid::inside),
-                            std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.21, Sphere::Fluid::outside)})
+  for (const auto& other : {std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.1200001, Sphere::Fluid::inside),
+                            std::make_shared<Sphere>(Vec3d(0.1, 0, 1e-9), 0.12, Sphere::Fluid::inside),
+                            std::make_shared<Sphere>(Vec3d(0.1, 0, 0), 0.12, Sphere::Fluid::outside)})
     EXPECT_TRUE(made(baked(Boundary(Surfaces{other}))));
   EXPECT_TRUE(read(baked(Boundary(kBall))));
 }
