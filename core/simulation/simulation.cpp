@@ -262,7 +262,8 @@ void Simulation::State::refuseSqueeze(const Squeeze& squeeze, double start) {
 void Simulation::State::advanceSubstep(double start, double dt) {
   const auto began = std::chrono::steady_clock::now();
   step.timeStep = static_cast<float>(dt);
-  step.gammaFloored = step.spreadParticles = step.wallJumps = 0;
+  step.gammaFloored = step.spreadParticles = 0;
+  step.wallJumps.clear();
   savedNeighbours.clear();
   step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });

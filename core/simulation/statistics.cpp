@@ -49,9 +49,9 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
     note("gamma_floor", steps,
          std::to_string(state.gammaFloored) + " evaluations of gamma were below the floor");
   }
-  if (state.wallJumps > 0) {
+  if (!state.wallJumps.empty()) {
     note("wall_jump", steps,
-         std::to_string(state.wallJumps) +
+         std::to_string(state.wallJumps.size()) +
              " times a wall pushed a particle further than it had come; no speed came of it");
   }
   noteSpread(state, steps);

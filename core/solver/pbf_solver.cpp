@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "core/base/guard.h"
@@ -102,10 +103,17 @@ void undoUpdate(StepState& state) {
   state.particles.velocity.swap(state.before.velocity);
 }
 
-/// Takes back what predict() has added.
+/// Takes back what predict() has added, and what the projection has moved of starts.
 void undoPrediction(StepState& state) {
+  Particles& particles = state.particles;
   const Vec3f gain = state.timeStep * state.gravity;
-  for (Float4& velocity : state.particles.velocity) velocity.setXyz(velocity.xyz() - gain);
+  for (Float4& velocity : particles.velocity) velocity.setXyz(velocity.xyz() - gain);
+  std::unordered_map<std::uint32_t, Float4> began;
+  for (const WithheldJump& jump : state.wallJumps)
+    began.try_emplace(jump.id, jump.began);  // the first counts
+  for (std::size_t i = 0; !began.empty() && i < particles.size(); ++i)
+    if (const auto at = began.find(particles.id[i]); at != began.end()) particles.position[i] = at->second;
+  state.wallJumps.clear();
 }
 
 /// Looks through the state after each stage, and keeps what it finds first.
@@ -198,7 +206,7 @@ void relax(StepState& state) {
   // Where the step is to go by another form, this is no step: only the true gradient gets fluid out of walls.
   const PositionStep form = std::exchange(state.parameters.positionStep, PositionStep::gradient);
   // Nothing here gains speed anyway.
-  const long jumps = state.wallJumps;
+  const std::size_t jumps = state.wallJumps.size();
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
@@ -210,7 +218,7 @@ void relax(StepState& state) {
     if (state.errors.back().max <= kCalm) break;
   }
   state.parameters.positionStep = form;
-  state.wallJumps = jumps;
+  state.wallJumps.resize(jumps);
 }
 
 long stabilise(StepState& state) {

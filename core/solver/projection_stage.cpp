@@ -16,63 +16,67 @@ constexpr float kRounding = 0.01F;
 /// What walls did to particles.
 struct Push {
   double work = 0;  ///< how far times the velocity of the wall there (m^2/s), 0 where no wall moves
-  long jumps = 0;   ///< particles that were pushed further than they had come
-
-  friend Push operator+(const Push& a, const Push& b) { return {a.work + b.work, a.jumps + b.jumps}; }
+  std::vector<WithheldJump> jumps;
 };
 
 /// A wall that stands still takes speed and gives none: it pushes no further than a particle has come since
 /// the step began. Where distances jump, at the rim of an open SLIM surface, or two walls leave no room, it
-/// does; what is too much of that leads from where the particle began, so that no speed comes of it. Returns
-/// whether.
-bool withholdJump(StepState& state, std::size_t i, const Vec3f& came, const Vec3f& pushed) {
+/// does; what is too much of that leads from where the particle began, so that no speed comes of it.
+void withholdJump(StepState& state, std::size_t i, const Vec3f& came, const Vec3f& pushed, Push& push) {
   Float4& began = state.particles.position[i];
-  const float push = (pushed - came).norm();
+  const float length = (pushed - came).norm();
   const float most = kSteepestDistance * (came - began.xyz()).norm() + kRounding * state.wallMargin();
-  if (push <= most) return false;
-  began = Float4(Vec3f(began.xyz() + (1 - most / push) * (pushed - came)));
-  return true;
+  if (length <= most) return;
+  push.jumps.push_back({state.particles.id[i], began});
+  began = Float4(Vec3f(began.xyz() + (1 - most / length) * (pushed - came)));
 }
 
 /// Puts particle i, which came from `from`, where it was at the start of the step or since, back on the fluid
-/// side.
-Push project(StepState& state, std::size_t i, const Float4& from, bool stepBegan) {
+/// side, and books that.
+void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan, Push& push) {
   Vec3f p = state.current[i].xyz();
   // How far it may have to be from walls for them not to be in its way.
   const float onTheWay = state.barringWalls.empty() ? 0 : kSteepestDistance * (p - from.xyz()).norm();
-  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return {};
-  if (!p.allFinite()) return {};  // no wall has a place for it; the step is about to be refused
+  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return;
+  if (!p.allFinite()) return;  // no wall has a place for it; the step is about to be refused
   const Vec3f came = p;
   if (!state.barringWalls.empty())
     p = heldBack(state.barringWalls, from.xyz(), stepBegan, p, state.wallMargin());
   state.boundary.project(p, state.wallMargin());
   state.current[i].setXyz(p);
-  if (p == came) return {};
-  if (state.boundary.moves()) return {static_cast<double>(state.boundary.wallVelocity(p).dot(p - came)), 0};
-  return {0, kGuards && withholdJump(state, i, came, p) ? 1 : 0};
+  if (p == came) return;
+  if (state.boundary.moves()) {
+    push.work += static_cast<double>(state.boundary.wallVelocity(p).dot(p - came));
+  } else if (kGuards) {
+    withholdJump(state, i, came, p, push);
+  }
 }
 
-/// Calls one(k) for all k < count, and books the walls' work and the jumps that it returns.
+/// Calls one(k, push) for all k < count, and books the walls' work and the jumps.
 template <class One>
 void projectEach(StepState& state, std::size_t count, const One& one) {
   const Push all = parallelReduce(
       state.pool, count, Push{},
       [&](std::size_t begin, std::size_t end) {
         Push part;
-        for (std::size_t k = begin; k < end; ++k) part = part + one(k);
+        for (std::size_t k = begin; k < end; ++k) one(k, part);
         return part;
       },
-      [](const Push& a, const Push& b) { return a + b; });
+      [](Push sum, const Push& part) {
+        sum.work += part.work;
+        sum.jumps.insert(sum.jumps.end(), part.jumps.begin(), part.jumps.end());
+        return sum;
+      });
   state.wallWork.add(all.work);
-  state.wallJumps += all.jumps;
+  state.wallJumps.insert(state.wallJumps.end(), all.jumps.begin(), all.jumps.end());
 }
 
 }  // namespace
 
 void projectNearWalls(StepState& state) {
-  projectEach(state, state.wallSlots.size(), [&](std::size_t k) {
+  projectEach(state, state.wallSlots.size(), [&](std::size_t k, Push& push) {
     const std::uint32_t i = state.wallSlots[k].particle;
-    return project(state, i, state.previous[i], false);
+    project(state, i, state.previous[i], false, push);
   });
 }
 
@@ -80,7 +84,7 @@ void projectAll(StepState& state) {
   if (state.boundary.empty()) return;
   state.wallSlot.resize(state.particles.size(), StepState::kNoWall);
   projectEach(state, state.particles.size(),
-              [&](std::size_t i) { return project(state, i, state.particles.position[i], true); });
+              [&](std::size_t i, Push& push) { project(state, i, state.particles.position[i], true, push); });
 }
 
 }  // namespace migiwa::stages

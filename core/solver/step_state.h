@@ -47,6 +47,12 @@ struct BeforeStep {
   std::vector<Float4> position, velocity;
 };
 
+/// A push by a wall that was kept from giving speed: where its particle began the step until then.
+struct WithheldJump {
+  std::uint32_t id;
+  Float4 began;
+};
+
 struct StepState {
   StepState(ThreadPool& threadPool, const Boundary& walls) : pool(threadPool), boundary(walls) {}
 
@@ -85,7 +91,7 @@ struct StepState {
 
   // Guards that acted in this step.
   long gammaFloored = 0;
-  long wallJumps = 0;        ///< pushes by walls that were kept from giving speed
+  std::vector<WithheldJump> wallJumps;
   long spreadParticles = 0;  ///< off heaps, see stages::spreadHeaps
 
   // Energy that the step was given, see core/solver/energy.h.
