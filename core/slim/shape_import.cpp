@@ -100,10 +100,10 @@ void addMesh(const fs::path& file, const aiMesh& part, const aiMatrix4x4& transf
   }
 }
 
-/// What dividing polygons takes for granted, and a broken file may not have: corners that exist, and a flag
-/// for polygons only where there are some.
+/// What dividing polygons takes for granted, and a broken file may not have: corners that exist, a flag for
+/// polygons only where there are some, and another where no face has a corner.
 void makeConsistent(const fs::path& file, const aiScene& scene) {
-  constexpr std::array<unsigned, 5> kKinds{0, aiPrimitiveType_POINT, aiPrimitiveType_LINE,
+  constexpr std::array<unsigned, 5> kKinds{aiPrimitiveType_POINT, aiPrimitiveType_POINT, aiPrimitiveType_LINE,
                                            aiPrimitiveType_TRIANGLE, aiPrimitiveType_POLYGON};
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     aiMesh& part = *scene.mMeshes[m];
