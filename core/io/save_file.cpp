@@ -144,7 +144,7 @@ std::string readAll(const fs::path& file) {
   if (content.size() < sizeof(Head) || std::memcmp(content.data(), kMagic.data(), kMagic.size()) != 0)
     return content;
   if (fs::is_regular_file(status)) content.reserve(fs::file_size(file, code));
-  std::vector<char> piece(std::size_t{1} << 20);
+  std::vector<char> piece(std::size_t{1} << 16);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
     content.append(piece.data(), static_cast<std::size_t>(in.gcount()));
   if (in.bad()) throw InputError(place, "expected a save, found one that cannot be read");

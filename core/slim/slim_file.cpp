@@ -213,6 +213,8 @@ SlimData parseSlimFile(const std::string& text, const std::string& name) {
   } catch (const Json::parse_error& error) {
     fail(name, "byte " + std::to_string(error.byte),
          "expected a file of a SLIM surface (JSON), found one that ends or breaks here");
+  } catch (const Json::out_of_range&) {
+    fail(name, "/", "expected numbers below 1.8e308, found one beyond");
   }
   if (!root.is_object() || root.find("format") == root.end() || root["format"] != kFormat)
     fail(name, "/format",
