@@ -1,96 +1,119 @@
 #include "core/slim/ply_check.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
-#include <sstream>
-#include <vector>
+#include <optional>
+
+#include "core/slim/ply_header.h"
 
 namespace migiwa {
 
 namespace {
 
-/// Bytes of a number in a binary file; 0 for a type that is none.
-std::size_t bytesOf(const std::string& type) {
-  if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
-  if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-  if (type == "int" || type == "uint" || type == "int32" || type == "uint32") return 4;
-  if (type == "float" || type == "float32") return 4;
-  if (type == "double" || type == "float64") return 8;
-  return 0;
-}
+/// Text, line by line.
+class Lines {
+ public:
+  Lines(std::string_view text, std::size_t before) : rest_(text), number_(before) {}
 
-struct Header {
-  bool ascii = false;
-  std::uint64_t elements = 0;  ///< of the kind whose properties follow
-  std::uint64_t lines = 0;     ///< of text after it
-  std::uint64_t least = 0;     ///< bytes after it
-  bool properties = true;      ///< of the kind that was named last
-};
-
-std::vector<std::string> wordsOf(std::string_view line) {
-  std::istringstream in{std::string(line)};
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
-/// Takes a line of the header over; false when it is none. `most`: elements that a file of this size can
-/// hold.
-bool take(const std::vector<std::string>& words, std::uint64_t most, Header& header) {
-  if (words.empty()) return false;
-  const std::string& kind = words.front();
-  if (kind == "comment" || kind == "obj_info") return true;
-  if (kind == "format") {
-    if (words.size() != 3) return false;
-    header.ascii = words[1] == "ascii";
-    return header.ascii || words[1] == "binary_little_endian" || words[1] == "binary_big_endian";
-  }
-  if (kind == "element") {
-    if (words.size() != 3 || !header.properties) return false;
-    std::istringstream number(words[2]);
-    if (!(number >> header.elements) || !number.eof() || header.elements > most) return false;
-    header.lines += header.elements;
-    header.properties = header.elements == 0;
+  /// Goes to the next line that holds something; false when there is none.
+  bool next() {
+    do {
+      if (rest_.empty()) return false;
+      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      line_ = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      ++number_;
+      skipSpace();
+    } while (line_.empty());
     return true;
   }
-  if (kind != "property" || words.size() < 3) return false;
-  const bool list = words[1] == "list";
-  if (words.size() != (list ? 5 : 3)) return false;
-  if (bytesOf(words[list ? 2 : 1]) == 0 || (list && bytesOf(words[3]) == 0)) return false;
-  header.least += header.elements * bytesOf(words[list ? 2 : 1]);
-  header.properties = true;
-  return true;
+  /// The next word of the line; empty at its end.
+  std::string_view word() {
+    const std::size_t end = std::min(line_.find_first_of(kSpace), line_.size());
+    const std::string_view result = line_.substr(0, end);
+    line_.remove_prefix(end);
+    skipSpace();
+    return result;
+  }
+  std::string place() const { return "line " + std::to_string(number_); }
+
+ private:
+  static constexpr std::string_view kSpace = " \t\r\v\f";
+  void skipSpace() { line_.remove_prefix(std::min(line_.find_first_not_of(kSpace), line_.size())); }
+
+  std::string_view rest_, line_;
+  std::size_t number_;
+};
+
+/// What is wrong with the line of one element; empty where nothing is.
+std::string textFault(const PlyElement& element, Lines& lines) {
+  for (const PlyProperty& property : element.properties) {
+    std::uint64_t values = 1;
+    if (property.listCount.bytes > 0) {
+      const std::string_view word = lines.word();
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), values);
+      if (word.empty() || error != std::errc() || end != word.data() + word.size())
+        return "expected how many numbers follow in " + lines.place() + ", found \"" + std::string(word) +
+               '"';
+    }
+    for (std::uint64_t k = 0; k < values; ++k)
+      if (lines.word().empty())
+        return "expected " + std::to_string(values) + " numbers in " + lines.place() + ", found " +
+               std::to_string(k);
+  }
+  return {};
+}
+
+std::string textFault(const PlyHeader& header) {
+  Lines lines(header.body, header.lines);
+  std::uint64_t expected = 0, found = 0;
+  for (const PlyElement& element : header.elements) expected += element.count;
+  for (const PlyElement& element : header.elements)
+    for (std::uint64_t k = 0; k < element.count; ++k, ++found) {
+      if (!lines.next())
+        return "expected " + std::to_string(expected) + " lines after the header, as it says, found " +
+               std::to_string(found) + ": the file ends early";
+      if (std::string fault = textFault(element, lines); !fault.empty()) return fault;
+    }
+  return {};
+}
+
+/// How many numbers a list holds; none where that is below zero, or the file has ended.
+std::optional<std::uint64_t> listCount(std::string_view& rest, const PlyType& type,
+                                       PlyHeader::Format format) {
+  if (rest.size() < type.bytes) return std::nullopt;
+  std::uint64_t value = 0;
+  for (std::size_t k = 0; k < type.bytes; ++k) {
+    const std::size_t at = format == PlyHeader::Format::bigEndian ? k : type.bytes - 1 - k;
+    value = value << 8U | static_cast<unsigned char>(rest[at]);
+  }
+  rest.remove_prefix(type.bytes);
+  if (type.negative && value >> (8 * type.bytes - 1) != 0) return std::nullopt;
+  return value;
+}
+
+std::string binaryFault(const PlyHeader& header) {
+  std::string_view rest = header.body;
+  for (const PlyElement& element : header.elements)
+    for (std::uint64_t k = 0; k < element.count; ++k)
+      for (const PlyProperty& property : element.properties) {
+        std::optional<std::uint64_t> values = 1;
+        if (property.listCount.bytes > 0) values = listCount(rest, property.listCount, header.format);
+        if (!values || rest.size() / property.type.bytes < *values)
+          return "expected all numbers of each element after the header, as it says, found that the file "
+                 "ends early";
+        rest.remove_prefix(*values * property.type.bytes);
+      }
+  return {};
 }
 
 }  // namespace
 
 std::string plyFault(std::string_view content) {
-  if (!content.starts_with("ply")) return "expected a PLY file, found one that does not begin with \"ply\"";
-  Header header;
-  std::string_view rest = content;
-  for (std::size_t number = 1;; ++number) {
-    const std::size_t end = rest.find('\n');
-    if (end == rest.npos) return "expected a PLY file, found one that ends within its header";
-    const std::vector<std::string> words = wordsOf(rest.substr(0, end));
-    rest.remove_prefix(end + 1);
-    if (number == 1) continue;
-    if (words == std::vector<std::string>{"end_header"} && header.properties) break;
-    if (!take(words, content.size(), header))
-      return "expected the header of a PLY file, found something else in its line " + std::to_string(number);
-  }
-
-  if (header.ascii) {
-    const auto held = static_cast<std::uint64_t>(std::count(rest.begin(), rest.end(), '\n')) +
-                      (!rest.empty() && rest.back() != '\n' ? 1 : 0);
-    if (held < header.lines)
-      return "expected " + std::to_string(header.lines) + " lines after the header, as it says, found " +
-             std::to_string(held) + ": the file ends early";
-  } else if (rest.size() < header.least) {
-    return "expected at least " + std::to_string(header.least) +
-           " bytes after the header, as it says, found " + std::to_string(rest.size()) +
-           ": the file ends early";
-  }
-  return {};
+  PlyHeader header;
+  if (std::string fault = readPlyHeader(content, header); !fault.empty()) return fault;
+  return header.format == PlyHeader::Format::ascii ? textFault(header) : binaryFault(header);
 }
 
 }  // namespace migiwa

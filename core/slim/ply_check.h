@@ -1,5 +1,6 @@
 // Whether a PLY file holds all that its header promises. assimp 5.2 never comes back from a header that does
-// not end, and makes up zeros for what is missing of the rest.
+// not end, makes up zeros for what is missing of the rest, and asks for memory for as many corners as a face
+// says.
 #pragma once
 
 #include <string>

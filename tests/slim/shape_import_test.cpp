@@ -1,6 +1,8 @@
 // Meshes and clouds from files, good and bad.
 #include "core/slim/shape_import.h"
 
+#include <array>
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -270,6 +272,54 @@ TEST_F(ShapeImport, RefusesCloudsThatAreNone) {
             std::string::npos);
 }
 
+/// A tetrahedron in binary, its lists counted by bytes and by shorts.
+std::string binaryPly(bool bigEndian, const std::string& counted, std::int64_t corners) {
+  std::string text = "ply\nformat binary_" + std::string(bigEndian ? "big" : "little") +
+                     "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+                     "element face 4\nproperty list " + counted + " int vertex_indices\nend_header\n";
+  const auto add = [&](std::int64_t value, std::size_t bytes) {
+    for (std::size_t k = 0; k < bytes; ++k)
+      text += static_cast<char>(value >> (8 * (bigEndian ? bytes - 1 - k : k)) & 0xFF);
+  };
+  for (const auto& corner : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)})
+    for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::int32_t>(corner[axis]), 4);
+  for (const auto& face :
+       {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{0, 3, 2}, std::array{1, 2, 3}}) {
+    add(corners, counted == "short" ? 2 : 1);
+    for (const int corner : face) add(corner, 4);
+  }
+  return text;
+}
+
+TEST_F(ShapeImport, ReadsBinaryPlyOfBothByteOrders) {
+  for (const bool bigEndian : {false, true})
+    for (const char* counted : {"uchar", "char", "short"}) {
+      const ImportedShape shape = importShape(write("tetrahedron.ply", binaryPly(bigEndian, counted, 3)));
+      EXPECT_EQ(shape.mesh.triangles.size(), 4U) << counted << bigEndian;
+      EXPECT_TRUE(shape.closed) << counted << bigEndian;
+    }
+}
+
+TEST_F(ShapeImport, RefusesPlyListsThatTheFileDoesNotHold) {
+  const std::string early =
+      "expected all numbers of each element after the header, as it says, found that the file ends early";
+  for (const bool bigEndian : {false, true})
+    for (const std::int64_t corners : {-1, 127, 30'000})
+      EXPECT_EQ(faultOf(write("long.ply", binaryPly(bigEndian, "short", corners))), early) << corners;
+  const auto text = [](const std::string& faces) {
+    return "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty float x\nproperty float "
+           "y\nproperty float "
+           "z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n\n0 1 0\n" +
+           faces;
+  };
+  EXPECT_EQ(faultOf(write("more.ply", text("3 0 1 2\n77777777 0 1 2\n"))),
+            "expected 77777777 numbers in line 16, found 3");
+  EXPECT_EQ(faultOf(write("word.ply", text("three 0 1 2\n3 0 1 2\n"))),
+            "expected how many numbers follow in line 15, found \"three\"");
+  EXPECT_EQ(faultOf(write("minus.ply", text("-1\n3 0 1 2\n"))),
+            "expected how many numbers follow in line 15, found \"-1\"");
+}
+
 TEST_F(ShapeImport, RefusesFilesThatEndEarly) {
   const std::string whole = cloudText(testing::ExactSphere{}.points(200).points, true);
   for (const std::size_t size : {std::size_t{3}, std::size_t{40}, whole.size() / 2})
@@ -277,12 +327,13 @@ TEST_F(ShapeImport, RefusesFilesThatEndEarly) {
         << size;
   EXPECT_EQ(faultOf(write("cut.ply", whole.substr(0, whole.rfind('\n', whole.size() - 2)))),
             "expected 200 lines after the header, as it says, found 199: the file ends early");
-  EXPECT_EQ(faultOf(write("binary.ply",
-                          "ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float "
-                          "x\nproperty float y\nproperty double z\nelement face 10\nproperty list "
-                          "uchar int vertex_indices\nend_header\n" +
-                              std::string(1000, '\1'))),
-            "expected at least 1610 bytes after the header, as it says, found 1000: the file ends early");
+  EXPECT_EQ(
+      faultOf(write("binary.ply",
+                    "ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float "
+                    "x\nproperty float y\nproperty double z\nelement face 10\nproperty list "
+                    "uchar int vertex_indices\nend_header\n" +
+                        std::string(1000, '\1'))),
+      "expected all numbers of each element after the header, as it says, found that the file ends early");
   std::string stl(80, ' ');
   stl += std::string("\x10\x27\0\0", 4) + std::string(120, '\0');  // 10,000 triangles, and two follow
   EXPECT_NE(faultOf(write("cut.stl", stl)), "accepted");
