@@ -264,6 +264,7 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   step.timeStep = static_cast<float>(dt);
   step.gammaFloored = step.spreadParticles = 0;
   step.wallJumps.clear();
+  step.metCoincident = false;
   savedNeighbours.clear();
   step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });

@@ -55,6 +55,10 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
              " times a wall pushed a particle further than it had come; no speed came of it");
   }
   noteSpread(state, steps);
+  if (state.metCoincident) {
+    note("coincident", steps,
+         "pairs of particles lay on one point; they parted in directions that follow from their ids");
+  }
   if (health.nonfinite > 0) {
     note("nonfinite", steps,
          std::to_string(health.nonfinite) + " particles are not finite, particle " +

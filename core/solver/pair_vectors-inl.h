@@ -76,18 +76,21 @@ struct PairOffsets {
 struct PairScale {
   float support, inverseSupport, inverseSquare;
   const std::uint32_t* ids;
+  std::atomic<bool>& metCoincident;
 
   explicit PairScale(const StepState& state)
       : support(state.supportRadius),
         inverseSupport(1 / support),
         inverseSquare(inverseSupport * inverseSupport),
-        ids(state.particles.id.data()) {}
+        ids(state.particles.id.data()),
+        metCoincident(state.metCoincident) {}
 };
 
 /// Gives pairs on one point the shortest distance that has a direction, and that of their ids. By value, so
 /// that the offsets of all other pairs stay in registers.
 HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale& scale, std::uint32_t own,
                                                const std::uint32_t* offsets) {
+  scale.metCoincident.store(true, std::memory_order_relaxed);
   const Pairs d;
   float lanes[4][kPairs];
   hn::StoreU(pair.x, d, lanes[0]), hn::StoreU(pair.y, d, lanes[1]), hn::StoreU(pair.z, d, lanes[2]);

@@ -3,6 +3,7 @@
 // rho/rho0; gradients are per support radius, so that nothing over- or underflows with the size of the scene.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -92,7 +93,8 @@ struct StepState {
   // Guards that acted in this step.
   long gammaFloored = 0;
   std::vector<WithheldJump> wallJumps;
-  long spreadParticles = 0;  ///< off heaps, see stages::spreadHeaps
+  long spreadParticles = 0;                         ///< off heaps, see stages::spreadHeaps
+  mutable std::atomic<bool> metCoincident = false;  ///< a pass over pairs met one on one point
 
   // Energy that the step was given, see core/solver/energy.h.
   WallWork wallWork;

