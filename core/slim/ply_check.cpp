@@ -46,22 +46,36 @@ class Lines {
   std::size_t number_;
 };
 
-/// What is wrong with the line of one element; empty where nothing is.
+template <class Number>
+bool isNumber(std::string_view word, Number& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+/// What is wrong with the line of one element; empty where nothing is. Strictly: what assimp takes for the
+/// end of a word or of a line, and what for the next number, is its own.
 std::string textFault(const PlyElement& element, Lines& lines) {
   for (const PlyProperty& property : element.properties) {
     std::uint64_t values = 1;
     if (property.listCount.bytes > 0) {
       const std::string_view word = lines.word();
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), values);
-      if (word.empty() || error != std::errc() || end != word.data() + word.size())
+      if (!isNumber(word, values))
         return "expected how many numbers follow in " + lines.place() + ", found \"" + std::string(word) +
                '"';
     }
-    for (std::uint64_t k = 0; k < values; ++k)
-      if (lines.word().empty())
+    for (std::uint64_t k = 0; k < values; ++k) {
+      const std::string_view word = lines.word();
+      double ignored = 0;
+      if (word.empty())
         return "expected " + std::to_string(values) + " numbers in " + lines.place() + ", found " +
                std::to_string(k);
+      if (!isNumber(word, ignored))
+        return "expected a number in " + lines.place() + ", found \"" + std::string(word) + '"';
+    }
   }
+  if (const std::string_view word = lines.word(); !word.empty())
+    return "expected the end of " + lines.place() + ", found \"" + std::string(word) + '"';
   return {};
 }
 

@@ -318,6 +318,15 @@ TEST_F(ShapeImport, RefusesPlyListsThatTheFileDoesNotHold) {
             "expected how many numbers follow in line 15, found \"three\"");
   EXPECT_EQ(faultOf(write("minus.ply", text("-1\n3 0 1 2\n"))),
             "expected how many numbers follow in line 15, found \"-1\"");
+  EXPECT_EQ(faultOf(write("extra.ply", text("3 0 1 2\n3 0 1 2 1\n"))),
+            "expected the end of line 16, found \"1\"");
+  EXPECT_EQ(faultOf(write("zero.ply", text("3 0 1 2\n3 0 1 2x\n"))),
+            "expected a number in line 16, found \"2x\"");
+  EXPECT_EQ(faultOf(write("vast.ply", text("99999999999999999999 0 1 2\n3 0 1 2\n"))),
+            "expected how many numbers follow in line 15, found \"99999999999999999999\"");
+  // Nothing is wrong with the numbers of these faces.
+  EXPECT_EQ(faultOf(write("signs.ply", text("+3 +0 1e0 2\n3 0 1 2\n"))),
+            "expected at least 4 triangles, found 1; a box or a plane is a shape of its own");
 }
 
 TEST_F(ShapeImport, RefusesFilesThatEndEarly) {
