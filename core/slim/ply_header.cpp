@@ -1,5 +1,6 @@
 #include "core/slim/ply_header.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace migiwa {
@@ -23,6 +24,14 @@ std::vector<std::string> wordsOf(std::string_view line) {
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return words;
+}
+
+/// Whether a line begins with a word and holds words and spaces only. What else there may be, assimp takes
+/// for the end of a line, or for part of a word.
+bool isPlain(std::string_view line) {
+  return !line.starts_with(' ') && !line.starts_with('\t') &&
+         std::none_of(line.begin(), line.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; });
 }
 
 bool takeFormat(const std::vector<std::string>& words, PlyHeader& header) {
@@ -78,9 +87,11 @@ std::string readPlyHeader(std::string_view content, PlyHeader& header) {
   while (true) {
     const std::size_t end = header.body.find('\n');
     if (end == header.body.npos) return "expected a PLY file, found one that ends within its header";
-    const std::vector<std::string> words = wordsOf(header.body.substr(0, end));
+    std::string_view line = header.body.substr(0, end);
     header.body.remove_prefix(end + 1);
     if (++header.lines == 1) continue;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::vector<std::string> words = isPlain(line) ? wordsOf(line) : std::vector<std::string>();
     if (words == std::vector<std::string>{"end_header"} && lastIsWhole(header)) return {};
     if (!take(words, content.size(), header))
       return "expected the header of a PLY file, found something else in its line " +

@@ -300,6 +300,16 @@ TEST_F(ShapeImport, ReadsBinaryPlyOfBothByteOrders) {
     }
 }
 
+TEST_F(ShapeImport, ReadsPlyWhoseLinesEndAsOnWindows) {
+  std::string text;
+  for (const char c : cloudText(testing::ExactSphere{}.points(200).points, true))
+    text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(importShape(write("cloud.ply", text)).cloud.points.size(), 200U);
+  text.insert(text.find("end_header"), "\r");
+  EXPECT_EQ(faultOf(write("return.ply", text)),
+            "expected the header of a PLY file, found something else in its line 10");
+}
+
 TEST_F(ShapeImport, RefusesPlyListsThatTheFileDoesNotHold) {
   const std::string early =
       "expected all numbers of each element after the header, as it says, found that the file ends early";
