@@ -65,7 +65,8 @@ with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run har
   `nearest`.
 - Where walls leave the water no room there is no solution, and the run has to end with an honest error (exit code 3): a
   case states from when to when, by the volume between the walls.
-- **Guards** are what the report lists as `trouble`: a case states which have to act, and no other may. Frames that had to be
+- **Guards** are what the report lists as `trouble`: a case states which have to act, and no other may but `coincident`:
+  whether two particles ever meet on one point, in a corner or after an impact, may hang on the last bit. Frames that had to be
   divided are no trouble, but are named here, as `substeps`.
 - **Without guards** is what the same case does in a program from which every guard of
   [core/base/guard.h](../../core/base/guard.h) is left out: "same hash" where none has acted, "holds" where others than those
@@ -78,7 +79,10 @@ constexpr const char* kNormal = R"(
 
 Guards may do nothing here: the hash with them is that without, as a test asserts. More steps than frames are those of the
 CFL rule, which both programs have: jets in the corner pass 8 m/s, where 0.4 h would be less than a step's way. Speeds are
-the time of one processor, the two programs in turns; medians, and of the ratio the quartiles, too.
+the time of one processor, the two programs in turns; medians, and of the ratio the quartiles, too. Counted in instructions
+(valgrind's cachegrind, vectors of AVX2), which no other load disturbs, guards are 3.3 % of the steps of the dam break and
+3.5 % of those of the corner drop: four fifths of that is the test for pairs on one point, in each pass over pairs, and an
+eighth is what `wall_jump` asks where walls push.
 
 )";
 

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "core/io/output_file.h"
+#include "tests/io/drop_test.h"
 #include "tests/io/particle_files.h"
-#include "tests/support/program.h"
 
 namespace migiwa::testing {
 namespace {
@@ -21,14 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-class DiskCommand : public ProgramTest {
+class DiskCommand : public DropTest {
  protected:
   void SetUp() override {
-    ProgramTest::SetUp();
-    std::ofstream(folder_ / "drop.json") << R"({ "format": 1, "particle_spacing": 0.05, "duration": 0.1,
-      "fluid": [ { "shape": "box", "min": [0.2, 0.2, 0], "max": [0.6, 0.6, 0.4], "velocity": [2, -3, 0] } ],
-      "boundary": { "surfaces": [ { "shape": "box", "fluid": "inside", "min": [0, 0, 0],
-                                    "max": [0.8, 1, 0.4] } ] } })";
+    DropTest::SetUp();
     std::ofstream(folder_ / "cube.obj")
         << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/io/drop_test.h"
 #include "tests/io/particle_files.h"
-#include "tests/support/program.h"
 
 namespace migiwa::testing {
 namespace {
@@ -17,15 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-class ExportCommand : public ProgramTest {
+class ExportCommand : public DropTest {
  protected:
-  void SetUp() override {
-    ProgramTest::SetUp();
-    std::ofstream(folder_ / "drop.json") << R"({ "format": 1, "particle_spacing": 0.05, "duration": 0.1,
-      "fluid": [ { "shape": "box", "min": [0.2, 0.2, 0], "max": [0.6, 0.6, 0.4], "velocity": [2, -3, 0] } ],
-      "boundary": { "surfaces": [ { "shape": "box", "fluid": "inside", "min": [0, 0, 0],
-                                    "max": [0.8, 1, 0.4] } ] } })";
-  }
   Outcome simulate(std::vector<std::string> options, const std::string& before = "true") const {
     options.insert(options.begin(), {"simulate", "drop.json", "--report", "report.json"});
     return run(options, before);
