@@ -1,6 +1,7 @@
 #include "core/slim/ply_header.h"
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace migiwa {
@@ -51,7 +52,10 @@ bool lastIsWhole(const PlyHeader& header) {
 
 /// `most`: elements that a file of this size can hold.
 bool takeElement(const std::vector<std::string>& words, std::uint64_t most, PlyHeader& header) {
-  if (words.size() != 3 || !lastIsWhole(header)) return false;
+  // Digits at the front of a name are the count to assimp.
+  if (words.size() != 3 || std::isalpha(static_cast<unsigned char>(words[1].front())) == 0 ||
+      !lastIsWhole(header))
+    return false;
   PlyElement element;
   std::istringstream number(words[2]);
   if (!(number >> element.count) || !number.eof() || element.count > most) return false;
