@@ -57,7 +57,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   noteSpread(state, steps);
   if (state.metCoincident) {
     note("coincident", steps,
-         "pairs of particles lay on one point; they parted in directions that follow from their ids");
+         "pairs of particles lay on one point; their direction was taken from their ids");
   }
   if (health.nonfinite > 0) {
     note("nonfinite", steps,
