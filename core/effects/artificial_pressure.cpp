@@ -30,14 +30,13 @@ namespace migiwa::HWY_NAMESPACE {
 
 template <class Kernel>
 void partRange(StepState& state, const PairPush& push, std::size_t begin, std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.paired.data();
-  const PairVector inverseReference = hn::Set(d, 1 / push.reference);
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
-    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    const PairVector inverseReference = hn::Set(d, 1 / push.reference);
+    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
@@ -46,9 +45,12 @@ void partRange(StepState& state, const PairPush& push, std::size_t begin, std::s
       for (int p = 0; p < push.power; ++p) force = hn::Mul(force, ratio);
       x = hn::MulAdd(force, pair.x, x), y = hn::MulAdd(force, pair.y, y), z = hn::MulAdd(force, pair.z, z);
     }
-    const Vec3f move = push.scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
-    state.current[i] = Float4(Vec3f(state.current[i].xyz() + move));
-  }
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    state.current[i] = Float4(Vec3f(state.current[i].xyz() + push.scale * sums.xyz()));
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 void partPairsOfRange(StepState& state, const PairPush& push, std::size_t begin, std::size_t end) {

@@ -36,13 +36,12 @@ namespace migiwa::HWY_NAMESPACE {
 /// n_i (xyz) and rho_i/rho0 (w).
 template <class Kernel>
 void normalsRange(StepState& state, std::size_t begin, std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
-    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d), covered = hn::Zero(d);
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d), covered = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
@@ -50,11 +49,14 @@ void normalsRange(StepState& state, std::size_t begin, std::size_t end) {
       const PairVector slope = KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, r);
       x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
     }
-    const Float4 sums = sumLanes(x, y, z, covered);
+    return sumLanes(x, y, z, covered);
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
     const float mass = state.lattice.massRatio;
     state.paired[i] =
         Float4(Vec3f(mass * pairScale.inverseSupport * sums.xyz()), mass * (Kernel::value(0) + sums.w));
-  }
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 void normalsOfRange(StepState& state, std::size_t begin, std::size_t end) {
@@ -64,20 +66,19 @@ void normalsOfRange(StepState& state, std::size_t begin, std::size_t end) {
 
 /// Moved positions from state.current and state.paired into state.previous.
 void pullOfRange(StepState& state, const TensionScale& scale, std::size_t begin, std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
   const Float4* const normals = state.paired.data();
-  const PairVector one = hn::Set(d, 1.0F), two = hn::Set(d, 2.0F), half = hn::Set(d, 0.5F);
-  const PairVector cohesion = hn::Set(d, -scale.cohesion * pairScale.inverseSupport);
-  const PairVector area = hn::Set(d, -scale.area);
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const Float4 own = normals[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    const PairVector one = hn::Set(d, 1.0F), two = hn::Set(d, 2.0F), half = hn::Set(d, 0.5F);
+    const PairVector cohesion = hn::Set(d, -scale.cohesion * pairScale.inverseSupport);
+    const PairVector area = hn::Set(d, -scale.area);
     const PairVector nx = hn::Set(d, own.x), ny = hn::Set(d, own.y), nz = hn::Set(d, own.z),
                      density = hn::Set(d, own.w);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
@@ -95,8 +96,11 @@ void pullOfRange(StepState& state, const TensionScale& scale, std::size_t begin,
       y = hn::MulAdd(pull, pair.y, hn::MulAdd(even, hn::Sub(ny, others.y), y));
       z = hn::MulAdd(pull, pair.z, hn::MulAdd(even, hn::Sub(nz, others.z), z));
     }
-    state.previous[i] = Float4(Vec3f(positions[i].xyz() + sumLanes(x, y, z, hn::Zero(d)).xyz()));
-  }
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums)
+                       HWY_ATTR { state.previous[i] = Float4(Vec3f(positions[i].xyz() + sums.xyz())); };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 }  // namespace migiwa::HWY_NAMESPACE

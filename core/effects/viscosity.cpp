@@ -23,16 +23,14 @@ namespace migiwa::HWY_NAMESPACE {
 /// `before`: the velocities, with the ghost's.
 template <class Kernel>
 void smoothRange(StepState& state, const Float4* before, float scale, std::size_t begin, std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto own = static_cast<std::uint32_t>(i);
-    const PairCentre centre(positions[i], pairScale, own);
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const Float4 velocity = before[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
     const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
@@ -42,9 +40,12 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
       y = hn::MulAdd(value, hn::Sub(others.y, vy), y);
       z = hn::MulAdd(value, hn::Sub(others.z, vz), z);
     }
-    const Vec3f change = scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
-    state.particles.velocity[i] = Float4(velocity.xyz() + change);
-  }
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    state.particles.velocity[i] = Float4(Vec3f(before[i].xyz() + scale * sums.xyz()));
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 void smoothVelocitiesOfRange(StepState& state, const Float4* before, float scale, std::size_t begin,
@@ -56,16 +57,15 @@ void smoothVelocitiesOfRange(StepState& state, const Float4* before, float scale
 /// The sum over the neighbours of w ((v_i - v_j) . e) e, times `scale`. `velocities` end with the ghost's.
 void shearOfRange(const StepState& state, const Float4* velocities, Float4* out, float scale,
                   std::size_t begin, std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
-  const PairVector one = hn::Set(d, 1.0F);
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const Float4 velocity = velocities[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    const PairVector one = hn::Set(d, 1.0F);
     const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
@@ -78,8 +78,11 @@ void shearOfRange(const StepState& state, const Float4* velocities, Float4* out,
       const PairVector force = hn::Mul(weight, along);
       x = hn::MulAdd(force, pair.x, x), y = hn::MulAdd(force, pair.y, y), z = hn::MulAdd(force, pair.z, z);
     }
-    out[i] = Float4(Vec3f(scale * pairScale.inverseSquare * sumLanes(x, y, z, hn::Zero(d)).xyz()));
-  }
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums)
+                       HWY_ATTR { out[i] = Float4(Vec3f(scale * pairScale.inverseSquare * sums.xyz())); };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 }  // namespace migiwa::HWY_NAMESPACE

@@ -24,15 +24,14 @@ namespace migiwa::HWY_NAMESPACE {
 template <class Kernel>
 void curlRange(const StepState& state, const Float4* velocities, Float4* out, float scale, std::size_t begin,
                std::size_t end) {
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const Float4 own = velocities[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
     const PairVector vx = hn::Set(d, own.x), vy = hn::Set(d, own.y), vz = hn::Set(d, own.z);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const PairVector slope =
@@ -44,9 +43,13 @@ void curlRange(const StepState& state, const Float4* velocities, Float4* out, fl
       y = hn::Add(y, hn::Sub(hn::Mul(pair.z, ux), hn::Mul(pair.x, uz)));
       z = hn::Add(z, hn::Sub(hn::Mul(pair.x, uy), hn::Mul(pair.y, ux)));
     }
-    const Vec3f curl = scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    const Vec3f curl = scale * sums.xyz();
     out[i] = Float4(curl, curl.norm());
-  }
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 /// N x w of the vorticities, which end with the ghost's.
@@ -55,14 +58,13 @@ void confineRange(const StepState& state, const Float4* vorticity, Float4* out, 
                   std::size_t begin, std::size_t end) {
   // A gradient that is a small part of w over the support radius has no direction to speak of.
   constexpr float kFlat = 0.05F;
-  const Pairs d;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
-  for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(positions[i], pairScale, static_cast<std::uint32_t>(i));
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
     const PairVector own = hn::Set(d, vorticity[i].w);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const PairVector slope =
@@ -70,11 +72,15 @@ void confineRange(const StepState& state, const Float4* vorticity, Float4* out, 
       const PairVector rise = hn::Mul(slope, hn::Sub(loadComponents(vorticity, &list[k]).w, own));
       x = hn::MulAdd(rise, pair.x, x), y = hn::MulAdd(rise, pair.y, y), z = hn::MulAdd(rise, pair.z, z);
     }
-    const Vec3f gradient = scale * sumLanes(x, y, z, hn::Zero(d)).xyz();
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    const Vec3f gradient = scale * sums.xyz();
     const float least = kFlat * vorticity[i].w * pairScale.inverseSupport;
     const float length = gradient.norm() + least;
     out[i] = length > 0 ? Float4(Vec3f(gradient.cross(vorticity[i].xyz()) / length)) : Float4();
-  }
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
 }
 
 void curlOfRange(const StepState& state, const Float4* velocities, Float4* out, float scale,

@@ -35,16 +35,19 @@ double EnergyBalance::excess(const StepState& state, const EnergySums& before, c
   const double gained = bySolver(state, before, now, dt),
                speedUp = dt * static_cast<double>(state.gravity.norm());
   const auto count = static_cast<double>(now.particles);
+  if (gained <= 0) return 0;
   // Stored energy is an estimate within a factor of two.
   const double allowed = count * (2 * stored + lift);
   const double slack = count * (0.5 * speedUp * speedUp + rounding);
   constexpr double kOfKinetic = 0.05;
-  // Fluid no faster than gravity makes it in ten steps is at rest, and trembles where the tolerance is tight,
-  // for as long as effects brake it.
-  const bool trembles = before.kinetic <= count * 0.5 * (10 * speedUp) * (10 * speedUp);
-  const double risen = trembles ? solver + std::min(effects, 0.0) : solver;
-  const double most = std::min(allowed - risen, allowed + kOfKinetic * before.kinetic);
-  return gained > std::max(most, 0.0) + slack ? gained - std::max(most, 0.0) : 0;
+  const double most = std::min(allowed - (solver - drainedAtRest), allowed + kOfKinetic * before.kinetic);
+  return gained > most + slack ? gained - most : 0;
+}
+
+bool EnergyBalance::atRest(const StepState& state, const EnergySums& sums, double dt) {
+  constexpr double kStepsOfGravity = 4;
+  const double speed = kStepsOfGravity * dt * static_cast<double>(state.gravity.norm());
+  return sums.kinetic <= 0.5 * static_cast<double>(sums.particles) * speed * speed;
 }
 
 void EnergyBalance::record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
@@ -55,8 +58,12 @@ void EnergyBalance::record(const StepState& state, const EnergySums& before, con
   potential = now.potential(gravity);
   walls += byWalls;
   effects += state.effectWork;
+  if (atRest(state, before, dt)) drainedAtRest += std::max(-state.effectWork, 0.0);
   solver += bySolver(state, before, now, dt);
-  if (now.particles > 0) mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
+  if (now.particles > 0) {
+    mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
+    mostRisen = std::max(mostRisen, (solver + std::min(effects, 0.0)) / static_cast<double>(now.particles));
+  }
   sample(time, now.particles);
 }
 
@@ -80,8 +87,10 @@ void EnergyBalance::visit(StateVisitor& visitor) {
   visitor.number("/energy/walls", walls);
   visitor.number("/energy/emitters", emitters);
   visitor.number("/energy/effects", effects);
+  visitor.number("/energy/drained_at_rest", drainedAtRest);
   visitor.number("/energy/solver", solver);
   visitor.number("/energy/most_gained", mostGained);
+  visitor.number("/energy/most_risen", mostRisen);
   visitor.number("/energy/stored", stored);
   visitor.number("/energy/lift", lift);
   std::int64_t stride = stride_, until = untilSample_;

@@ -23,7 +23,7 @@ inline Vec3f coincidentDirection(std::uint32_t id, std::uint32_t other) {
   return id < other ? unit : Vec3f(-unit);
 }
 
-/// Pairs closer than this many support radii have no direction of their own in float.
+/// How far apart they are taken to be, over the support radius.
 inline constexpr float kCoincident = 1e-5F;
 
 }  // namespace migiwa

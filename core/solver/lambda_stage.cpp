@@ -32,15 +32,19 @@ namespace migiwa::HWY_NAMESPACE {
 struct NeighbourSums {
   float covered;        ///< sum of W, the particle itself left out
   float squaredSlopes;  ///< sum of the squared slopes of the pair kernel
-  Vec3f gradient;       ///< sum of the gradients of the pair kernel, times the support radius
+  Vec3f gradient;       ///< sum of the gradients of the pair kernel, times the support radius squared
 };
 
-template <class Kernel>
-HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const PairScale& scale, std::uint32_t i) {
+/// Of a pair on one point they are not.
+HWY_INLINE bool isFinite(const NeighbourSums& sums) {
+  return std::isfinite(sums.squaredSlopes);
+}
+
+template <class Kernel, class Centre>
+HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const Centre& centre, std::size_t i) {
   using Density = KernelVectors<Kernel>;
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
-  const PairCentre centre(state.current[i], scale, i);
   const Float4* const others = state.current.data();
   PairVector covered = hn::Zero(d), slopes = hn::Zero(d), x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
@@ -54,7 +58,7 @@ HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const PairScale& 
     x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
   }
   const Float4 sums = sumLanes(x, y, z, covered);
-  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz() * scale.inverseSupport};
+  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz()};
 }
 
 template <class Kernel>
@@ -64,16 +68,17 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
   const bool added = state.addsWallDensity();
   const PairScale scale(state);
+  const auto ofNeighbours = [&state](const auto& centre, std::size_t i)
+                                HWY_ATTR { return sumNeighbours<Kernel>(state, centre, i); };
   stages::ErrorSum error;
-  for (std::size_t i = begin; i < end; ++i) {
-    const NeighbourSums sums = sumNeighbours<Kernel>(state, scale, static_cast<std::uint32_t>(i));
+  const auto solve = [&](std::size_t i, const NeighbourSums& sums) HWY_ATTR {
     const float inverseGamma = added ? 1 : 1 / state.gamma[i];
     float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
     if (added) density += 1 - state.gamma[i];
     const float constraint = std::max(density - 1, 0.0F);
     float lambda = 0;
     if (constraint > 0) {
-      Vec3f gradient = massRatio * sums.gradient;
+      Vec3f gradient = massRatio * (scale.inverseSupport * sums.gradient);
       if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall)
         gradient -= (added ? 1 : density) * state.wallSlots[slot].sample.pairGradient;
       const float squaredGradients =
@@ -86,7 +91,8 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
     error.sum += static_cast<double>(constraint);
     error.squares += static_cast<double>(constraint * constraint);
     error.max = std::max(error.max, constraint);
-  }
+  };
+  forPairs(state.current.data(), scale, begin, end, ofNeighbours, solve);
   return error;
 }
 

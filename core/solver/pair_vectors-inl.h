@@ -8,6 +8,8 @@
 #define MIGIWA_PAIR_VECTORS_INL_H
 #endif
 
+#include <cmath>
+
 #include <hwy/highway.h>
 
 #include "core/base/guard.h"
@@ -86,17 +88,36 @@ struct PairScale {
         metCoincident(state.metCoincident) {}
 };
 
-/// Gives pairs on one point the shortest distance that has a direction, and that of their ids. By value, so
-/// that the offsets of all other pairs stay in registers.
-HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale& scale, std::uint32_t own,
+/// A particle at `at`, to be paired with its neighbours.
+struct PairCentre {
+  PairVector x, y, z, inverseSquare;
+
+  HWY_INLINE PairCentre(const Float4& at, const PairScale& scale)
+      : x(hn::Set(Pairs(), at.x)),
+        y(hn::Set(Pairs(), at.y)),
+        z(hn::Set(Pairs(), at.z)),
+        inverseSquare(hn::Set(Pairs(), scale.inverseSquare)) {}
+
+  HWY_INLINE PairOffsets to(const Components& others, const std::uint32_t* /*offsets*/) const {
+    PairOffsets pair{hn::Sub(x, others.x), hn::Sub(y, others.y), hn::Sub(z, others.z), hn::Zero(Pairs())};
+    pair.squared = hn::Mul(inverseSquare,
+                           hn::MulAdd(pair.x, pair.x, hn::MulAdd(pair.y, pair.y, hn::Mul(pair.z, pair.z))));
+    return pair;
+  }
+};
+
+/// Gives pairs on one point the shortest distance that has a direction, and that of their ids.
+HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale& scale, std::size_t own,
                                                const std::uint32_t* offsets) {
-  scale.metCoincident.store(true, std::memory_order_relaxed);
+  // A squared distance over the support radius whose inverse does not overflow.
+  constexpr float kLeast = 1e-36F;
   const Pairs d;
   float lanes[4][kPairs];
   hn::StoreU(pair.x, d, lanes[0]), hn::StoreU(pair.y, d, lanes[1]), hn::StoreU(pair.z, d, lanes[2]);
   hn::StoreU(pair.squared, d, lanes[3]);
   for (std::size_t k = 0; k < kPairs; ++k) {
-    if (lanes[3][k] >= kCoincident * kCoincident) continue;
+    if (!(lanes[3][k] < kLeast)) continue;
+    scale.metCoincident.store(true, std::memory_order_relaxed);
     const Vec3f direction = coincidentDirection(scale.ids[own], scale.ids[offsets[k] / sizeof(Float4)]);
     for (int axis = 0; axis < 3; ++axis) lanes[axis][k] = kCoincident * scale.support * direction[axis];
     lanes[3][k] = kCoincident * kCoincident;
@@ -104,31 +125,42 @@ HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale
   return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]), hn::LoadU(d, lanes[3])};
 }
 
-/// A particle at `at`, to be paired with its neighbours.
-struct PairCentre {
-  PairVector x, y, z, inverseSquare;
+/// A particle that is on one point with others.
+struct PartingCentre {
+  PairCentre centre;
   const PairScale& scale;
-  std::uint32_t index;
-
-  HWY_INLINE PairCentre(const Float4& at, const PairScale& pairScale, std::uint32_t own)
-      : x(hn::Set(Pairs(), at.x)),
-        y(hn::Set(Pairs(), at.y)),
-        z(hn::Set(Pairs(), at.z)),
-        inverseSquare(hn::Set(Pairs(), pairScale.inverseSquare)),
-        scale(pairScale),
-        index(own) {}
+  std::size_t own;
 
   HWY_INLINE PairOffsets to(const Components& others, const std::uint32_t* offsets) const {
-    const Pairs d;
-    PairOffsets pair{hn::Sub(x, others.x), hn::Sub(y, others.y), hn::Sub(z, others.z), hn::Zero(d)};
-    pair.squared = hn::Mul(inverseSquare,
-                           hn::MulAdd(pair.x, pair.x, hn::MulAdd(pair.y, pair.y, hn::Mul(pair.z, pair.z))));
-    if (!kGuards) return pair;
-    const auto coincident = hn::Lt(pair.squared, hn::Set(d, kCoincident * kCoincident));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, coincident))) return partCoincident(pair, scale, index, offsets);
-    return pair;
+    return partCoincident(centre.to(others, offsets), scale, own, offsets);
   }
 };
+
+/// Each sum has the pair's inverse distance for a factor, so that one of them stands for all.
+HWY_INLINE bool isFinite(const Float4& sums) {
+  return std::isfinite(sums.x);
+}
+
+/// use(i, sum(centre, i)) for the particles from `begin` to `end`, `positions` theirs. The inverse distance
+/// of a pair on one point is infinite, and with it the sum is not finite: no pair needs to be asked, and
+/// those particles have their turn at the end.
+template <class Sum, class Use>
+HWY_INLINE void forPairs(const Float4* positions, const PairScale& scale, std::size_t begin, std::size_t end,
+                         const Sum& sum, const Use& use) {
+  std::size_t first = end;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto sums = sum(PairCentre(positions[i], scale), i);
+    if (kGuards && HWY_UNLIKELY(!isFinite(sums))) {
+      first = HWY_MIN(first, i);
+      continue;
+    }
+    use(i, sums);
+  }
+  for (std::size_t i = first; i < end; ++i) {
+    const PairCentre centre(positions[i], scale);
+    if (!isFinite(sum(centre, i))) use(i, sum(PartingCentre{centre, scale, i}, i));
+  }
+}
 
 /// Asks early for the lists of the particles to come. From 100,000 particles on they are a stream that no
 /// cache holds, and the processor loses it among the rows of neighbours: a twentieth of a pass. The address

@@ -15,15 +15,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
-/// Sum over the neighbours of (w_i + w_j) times the gradient of the pair kernel, times the support radius.
-template <class Kernel>
-HWY_INLINE Vec3f sumPairs(const StepState& state, const PairScale& scale, std::uint32_t i) {
+/// Sum over the neighbours of (w_i + w_j) times the gradient of the pair kernel, times the support radius
+/// squared.
+template <class Kernel, class Centre>
+HWY_INLINE Float4 pushOfPairs(const StepState& state, const Centre& centre, std::size_t i) {
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
-  const Float4 at = state.paired[i];
-  const PairCentre centre(at, scale, i);
-  const PairVector own = hn::Set(d, at.w);
   const Float4* const others = state.paired.data();
+  const PairVector own = hn::Set(d, others[i].w);
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
   prefetchLists(list.data());
@@ -34,24 +33,27 @@ HWY_INLINE Vec3f sumPairs(const StepState& state, const PairScale& scale, std::u
     const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::slopeOverDistance(d, r));
     x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
   }
-  return sumLanes(x, y, z, hn::Zero(d)).xyz() * scale.inverseSupport;
+  return sumLanes(x, y, z, hn::Zero(d));
 }
 
 template <class Kernel>
 void moveRange(StepState& state, float weight, std::size_t begin, std::size_t end) {
   const bool wallPush = state.parameters.positionStep != PositionStep::paper;
   const PairScale scale(state);
-  for (std::size_t i = begin; i < end; ++i) {
-    Vec3f move = state.lattice.massRatio * sumPairs<Kernel>(state, scale, static_cast<std::uint32_t>(i));
+  const auto push = [&state](const auto& centre, std::size_t i)
+                        HWY_ATTR { return pushOfPairs<Kernel>(state, centre, i); };
+  const auto move = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    Vec3f way = state.lattice.massRatio * (scale.inverseSupport * sums.xyz());
     if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
-      move -= state.wallPush(i) * state.wallSlots[slot].sample.pairGradient;
-    Vec3f moved = state.current[i].xyz() + state.supportRadius * move;
+      way -= state.wallPush(i) * state.wallSlots[slot].sample.pairGradient;
+    Vec3f moved = state.current[i].xyz() + state.supportRadius * way;
     if (weight != 1) {
       const Vec3f before = state.previous[i].xyz();
       moved = before + weight * (moved - before);
     }
     state.previous[i] = Float4(moved);
-  }
+  };
+  forPairs(state.paired.data(), scale, begin, end, push, move);
 }
 
 void movePositionsOfRange(StepState& state, float weight, std::size_t begin, std::size_t end) {

@@ -86,6 +86,7 @@ Observed observe(const Scene& scene, double until, int threads) {
   const double rounding = 0x1p-24 * farthest / dt * run.maxSpeed * std::sqrt(static_cast<double>(run.steps));
   seen.energyBound = 2 * run.energy.stored + 0.5 * start.density * gravity * start.height +
                      0.5 * (gravity * dt) * (gravity * dt) + rounding;
+  seen.energyRisen = run.energy.mostRisen;
   seen.energyWork = run.energy.walls + run.energy.emitters;
   seen.maxSpeed = run.maxSpeed;
   seen.penetration = run.maxPenetration;

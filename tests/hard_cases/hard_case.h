@@ -15,6 +15,7 @@ namespace migiwa::testing {
 struct Observed {
   double energyGain = 0;   ///< most that the solver ever has added to kinetic + potential energy
   double energyBound = 0;  ///< the most that it may: what was stored at the start, see observe()
+  double energyRisen = 0;  ///< most that kinetic + potential energy rose above what work and emitters gave
   double energyWork = 0;   ///< of moving walls and emitters, at the end
   double maxSpeed = 0;     ///< (m/s)
   double penetration = 0;  ///< (m)

@@ -59,8 +59,9 @@ std::vector<HardCase> casesOfEveryMethod() {
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryMethod, ::testing::ValuesIn(casesOfEveryMethod()),
                          [](const auto& one) { return testName(one.param); });
 
-/// In the soak alone: the same bits with any number of threads, and no method of gamma that loses a particle
-/// or leaves what is finite.
+/// In the soak alone: the same bits with any number of threads, and no method of gamma that loses a particle,
+/// leaves what is finite, or gives the fluid energy. A method that is not made for a case's walls may shake
+/// water at rest, which viscosity drains: asked is that both together give none.
 class Soak : public ::testing::TestWithParam<HardCase> {};
 
 TEST_P(Soak, HoldsWithEveryMethodAndThreadCount) {
@@ -70,10 +71,16 @@ TEST_P(Soak, HoldsWithEveryMethodAndThreadCount) {
     EXPECT_EQ(observe(sceneOf(GetParam()), until, threads).hash, hash) << threads << " threads";
   for (const std::string method : {"mean", "nearest", "product", "copula", "directions", "baked"}) {
     SCOPED_TRACE(method);
-    const Observed seen = observe(sceneOf(GetParam(), method), until, 1);
-    EXPECT_EQ(seen.nonfinite, 0);
-    EXPECT_EQ(seen.lost, 0);
-    EXPECT_LE(seen.energyGain, seen.energyBound);
+    try {
+      const Observed seen = observe(sceneOf(GetParam(), method), until, 1);
+      EXPECT_EQ(seen.nonfinite, 0);
+      EXPECT_EQ(seen.lost, 0);
+      EXPECT_LE(seen.energyRisen, seen.energyBound);
+    } catch (const InputError& refused) {
+      // Grids of gamma over a kilometre fit no memory, and that is what it has to say.
+      EXPECT_EQ(method, "baked") << refused.what();
+      EXPECT_NE(std::string(refused.what()).find("GiB"), std::string::npos) << refused.what();
+    }
   }
 }
 

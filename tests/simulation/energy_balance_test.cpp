@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/boundary/boundary.h"
 #include "core/scene/scene_reader.h"
 #include "core/simulation/simulation.h"
+#include "core/solver/step_state.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
@@ -91,6 +93,50 @@ TEST(EnergyBalance, ViscosityTakesNoMoreThanThereIsAndTheSolverAddsNothing) {
   const double half = 0.5 * 0.005 * 9.81 * simulation.statistics().maxSpeed *
                       static_cast<double>(simulation.view().positions.size());
   EXPECT_NEAR(lost, -energy.effects - energy.solver, half) << "within half a step's fall";
+}
+
+/// Ten particles with this kinetic energy in all (m^2/s^2).
+EnergySums tenWith(double kinetic) {
+  EnergySums sums;
+  sums.kinetic = kinetic, sums.particles = 10;
+  return sums;
+}
+
+TEST(EnergyBalance, WhatStepsMayAddIsAddedUpAndWhatIsOwedStaysOwed) {
+  ThreadPool pool(1);
+  const Boundary none;
+  StepState step(pool, none);
+  EnergyBalance energy;
+  energy.stored = 1;  // 2 for each particle, with the estimate's factor
+  const auto excess = [&](double gained, double rounding = 0) {
+    return energy.excess(step, tenWith(1000), tenWith(1000 + gained), 0.1, rounding);
+  };
+  EXPECT_EQ(excess(15), 0);
+  EXPECT_EQ(excess(25), 5);
+  EXPECT_EQ(excess(25, 0.5), 0);
+  EXPECT_EQ(excess(25, 0.4), 5);
+  energy.solver = 24;  // 4 more than it may
+  EXPECT_EQ(excess(3), 7);
+  EXPECT_EQ(excess(-3), 0) << "there is nothing to take back";
+  energy.drainedAtRest = 5;
+  EXPECT_EQ(excess(3), 2);
+  energy.solver = -1e6;
+  EXPECT_EQ(excess(100), 30) << "beyond a twentieth of the kinetic energy, however much has been dissipated";
+}
+
+TEST(EnergyBalance, WhatEffectsTakeOfMovingFluidMayNotBeAddedAnew) {
+  ThreadPool pool(1);
+  const Boundary none;
+  StepState step(pool, none);
+  step.gravity = Vec3f(0, -8, 0);
+  step.effectWork = -3;
+  EnergyBalance energy;
+  // Four steps of 1/8 s make 4 m/s, 8 m^2/s^2 for each particle.
+  energy.record(step, tenWith(81), tenWith(78), 0.125, 0);
+  EXPECT_EQ(energy.drainedAtRest, 0);
+  energy.record(step, tenWith(80), tenWith(77), 0.125, 0);
+  EXPECT_EQ(energy.drainedAtRest, 3);
+  EXPECT_EQ(energy.effects, -6);
 }
 
 TEST(EnergyBalance, TheHistoryStaysShortAndEven) {
