@@ -25,7 +25,6 @@ class EffectPipeline {
   /// False where it leaves a velocity that is not finite, or that is too large for its square to be.
   bool changeVelocities(StepState& state, const Watch& watch = {});
 
-
   /// The longest step (s) over which all of them are stable.
   double longestStep(const StepState& state) const;
 

@@ -24,8 +24,7 @@ void PressureSum::begin(const StepState& state) {
 void PressureSum::iterate(const StepState& state, float weight) {
   if (!watched_) return;
   parallelFor(state.pool, now_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      before_[i] += weight * (now_[i] + state.lambda[i] - before_[i]);
+    for (std::size_t i = begin; i < end; ++i) before_[i] += weight * (now_[i] + state.lambda[i] - before_[i]);
   });
   now_.swap(before_);
 }

@@ -157,7 +157,8 @@ std::vector<Vec3f> sampleWalls(const Boundary& boundary, const Bounds& region, f
     });
   };
   std::vector<std::size_t> blocksNear(slabs, 0);
-  inSlabs([&](std::size_t slab, const Vec3f& corner) { blocksNear[slab] += candidates.any(corner) ? 1U : 0U; });
+  inSlabs(
+      [&](std::size_t slab, const Vec3f& corner) { blocksNear[slab] += candidates.any(corner) ? 1U : 0U; });
   requireMemory(kBytesPerBlock * std::accumulate(blocksNear.begin(), blocksNear.end(), 0.0),
                 "boundary particles", place);
   std::vector<std::vector<Vec3f>> layers(slabs), thins(slabs);
