@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <sys/mman.h>
+
 #include "core/base/error.h"
 #include "core/io/output_file.h"
 
@@ -21,12 +23,14 @@ struct PipeCloser {
 /// What gnuplot prints for a script; empty when it is not there or fails. The picture comes back through a
 /// pipe, since of a file that it cannot finish gnuplot says nothing.
 std::string printed(const std::string& text) {
-  // Without a name: gone when it is closed, whatever happens.
-  const std::unique_ptr<std::FILE, FileCloser> script(std::tmpfile());
+  // In memory: no folder for temporary files that may be full, and gone when it is closed.
+  const int descriptor = memfd_create("gnuplot", 0);
+  if (descriptor < 0) return {};
+  const std::unique_ptr<std::FILE, FileCloser> script(fdopen(descriptor, "w"));
   if (!script || std::fwrite(text.data(), 1, text.size(), script.get()) != text.size() ||
       std::fflush(script.get()) != 0)
     return {};
-  const std::string command = "gnuplot 2>/dev/null </dev/fd/" + std::to_string(fileno(script.get()));
+  const std::string command = "gnuplot 2>/dev/null </dev/fd/" + std::to_string(descriptor);
   std::unique_ptr<std::FILE, PipeCloser> pipe(popen(command.c_str(), "r"));
   if (!pipe) return {};
   std::string result;
