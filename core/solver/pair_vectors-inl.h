@@ -136,7 +136,8 @@ struct PartingCentre {
   }
 };
 
-/// Each sum has the pair's inverse distance for a factor, so that one of them stands for all.
+/// Where pairs need a direction, all of a sum's components have the inverse distance for a factor: one stands
+/// for all.
 HWY_INLINE bool isFinite(const Float4& sums) {
   return std::isfinite(sums.x);
 }

@@ -1,11 +1,15 @@
 // The vectorised passes against plain code, pair by pair, on every instruction set that this processor has.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
 #include "core/effects/effect.h"
+#include "core/solver/coincident_pair.h"
 #include "core/solver/stages.h"
 #include "tests/support/dense_tank.h"
 #include "tests/support/scalar_passes.h"
+#include "tests/support/test_effects.h"
 
 namespace migiwa {
 namespace {
@@ -98,6 +102,62 @@ TEST(VectorPasses, EveryKernelsVectorIsTheKernel) {
           ASSERT_NEAR(state.density[i], expected, 2e-5F * expected);
         }
       });
+    });
+  }
+}
+
+/// A tank with two of the particles in its middle on one point.
+class TankWithACoincidentPair {
+ public:
+  static constexpr std::uint32_t kOne = 220, kOther = 221;
+
+  explicit TankWithACoincidentPair(KernelType kernel) : tank_(500, 1) {
+    StepState& state = tank_.state();
+    state.parameters.kernel = kernel;
+    state.lattice = restingLattice(kernel, state.parameters.supportRatio);
+    state.particles.position[kOther] = state.particles.position[kOne];
+    tank_.prepare();
+  }
+  StepState& state() { return tank_.state(); }
+  Vec3f current(std::uint32_t id) {
+    const std::vector<std::uint32_t>& ids = state().particles.id;
+    return state()
+        .current[static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin())]
+        .xyz();
+  }
+
+ private:
+  DenseTank tank_;
+};
+
+TEST(VectorPasses, APairOnOnePointPartsInTheDirectionOfItsIds) {
+  // Of the others the slope is zero at distance zero.
+  for (const KernelType kernel : {KernelType::poly6, KernelType::spiky}) {
+    onEveryTarget([kernel] {
+      TankWithACoincidentPair tank(kernel);
+      StepState& state = tank.state();
+      ASSERT_EQ(tank.current(tank.kOne), tank.current(tank.kOther));
+      state.metCoincident = false;
+      stages::computeLambda(state);
+      stages::movePositions(state);
+      EXPECT_TRUE(state.metCoincident);
+      // All else pushes both alike.
+      const Vec3f apart = tank.current(tank.kOne) - tank.current(tank.kOther);
+      EXPECT_GT(apart.norm(), 1e-3F * DenseTank::kSpacing);
+      EXPECT_GT(apart.normalized().dot(coincidentDirection(tank.kOne, tank.kOther)), 0.999F);
+    });
+  }
+}
+
+TEST(VectorPasses, APairOnOnePointLeavesEveryKernelAndEffectFinite) {
+  for (const KernelType kernel :
+       {KernelType::poly6, KernelType::spiky, KernelType::cubicSpline, KernelType::wendlandC2}) {
+    onEveryTarget([kernel] {
+      TankWithACoincidentPair tank(kernel);
+      EffectPipeline effects(testing::effectsOf(
+          R"({"viscosity": {"kinematic": 0.001}, "vorticity_confinement": {},
+              "surface_tension": {"coefficient": 1}, "artificial_pressure": {}})"));
+      EXPECT_FALSE(advanceStep(tank.state(), effects).any());
     });
   }
 }
