@@ -106,33 +106,29 @@ struct PairCentre {
   }
 };
 
-/// Gives pairs on one point the shortest distance that has a direction, and that of their ids.
-HWY_NOINLINE inline PairOffsets partCoincident(PairOffsets pair, const PairScale& scale, std::size_t own,
-                                               const std::uint32_t* offsets) {
-  // A squared distance over the support radius whose inverse does not overflow.
-  constexpr float kLeast = 1e-36F;
-  const Pairs d;
-  float lanes[4][kPairs];
-  hn::StoreU(pair.x, d, lanes[0]), hn::StoreU(pair.y, d, lanes[1]), hn::StoreU(pair.z, d, lanes[2]);
-  hn::StoreU(pair.squared, d, lanes[3]);
-  for (std::size_t k = 0; k < kPairs; ++k) {
-    if (!(lanes[3][k] < kLeast)) continue;
-    scale.metCoincident.store(true, std::memory_order_relaxed);
-    const Vec3f direction = coincidentDirection(scale.ids[own], scale.ids[offsets[k] / sizeof(Float4)]);
-    for (int axis = 0; axis < 3; ++axis) lanes[axis][k] = kCoincident * scale.support * direction[axis];
-    lanes[3][k] = kCoincident * kCoincident;
-  }
-  return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]), hn::LoadU(d, lanes[3])};
-}
-
-/// A particle that is on one point with others.
+/// A particle that is on one point with others: those pairs get the shortest distance that has a direction,
+/// and that of their ids.
 struct PartingCentre {
   PairCentre centre;
   const PairScale& scale;
   std::size_t own;
 
-  HWY_INLINE PairOffsets to(const Components& others, const std::uint32_t* offsets) const {
-    return partCoincident(centre.to(others, offsets), scale, own, offsets);
+  HWY_NOINLINE PairOffsets to(const Components& others, const std::uint32_t* offsets) const {
+    // A squared distance over the support radius whose inverse does not overflow.
+    constexpr float kLeast = 1e-36F;
+    const Pairs d;
+    const PairOffsets pair = centre.to(others, offsets);
+    float lanes[4][kPairs];
+    hn::StoreU(pair.x, d, lanes[0]), hn::StoreU(pair.y, d, lanes[1]), hn::StoreU(pair.z, d, lanes[2]);
+    hn::StoreU(pair.squared, d, lanes[3]);
+    for (std::size_t k = 0; k < kPairs; ++k) {
+      if (!(lanes[3][k] < kLeast)) continue;
+      scale.metCoincident.store(true, std::memory_order_relaxed);
+      const Vec3f direction = coincidentDirection(scale.ids[own], scale.ids[offsets[k] / sizeof(Float4)]);
+      for (int axis = 0; axis < 3; ++axis) lanes[axis][k] = kCoincident * scale.support * direction[axis];
+      lanes[3][k] = kCoincident * kCoincident;
+    }
+    return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]), hn::LoadU(d, lanes[3])};
   }
 };
 
