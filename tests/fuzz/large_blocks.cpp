@@ -1,4 +1,4 @@
-// The memory of libFuzzer's programs. assimp asks for two blocks of 16 MiB for every OBJ file, however short,
+// The memory of fuzz_obj. assimp asks for two blocks of 16 MiB for every OBJ file, however short,
 // and fills them; the address sanitizer maps such blocks anew each time, and the kernel clears every page of
 // them, which takes most of an execution. Here a large block that was given back is handed out again, and to
 // use it in between is an error as ever. Smaller ones are the sanitizer's.
