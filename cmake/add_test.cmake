@@ -11,6 +11,22 @@ set(migiwa_test_cache ${CMAKE_BINARY_DIR}/test_cache)
 add_test(NAME test_cache_emptied COMMAND ${CMAKE_COMMAND} -E rm -rf ${migiwa_test_cache})
 set_tests_properties(test_cache_emptied PROPERTIES FIXTURES_SETUP test_cache)
 
+# What all test programs read, parsed once for all of them.
+file(WRITE ${CMAKE_BINARY_DIR}/precompiled_for_tests.cpp "// Nothing but the precompiled headers.\n")
+add_library(migiwa_test_headers OBJECT ${CMAKE_BINARY_DIR}/precompiled_for_tests.cpp)
+target_link_libraries(migiwa_test_headers PRIVATE migiwa_core GTest::gtest)
+migiwa_target_options(migiwa_test_headers)
+target_precompile_headers(migiwa_test_headers PRIVATE <gtest/gtest.h> ${migiwa_common_headers}
+  "${PROJECT_SOURCE_DIR}/core/scene/scene.h" "${PROJECT_SOURCE_DIR}/core/simulation/simulation.h")
+
+# Reads them in the files of a test program.
+function(migiwa_reuse_test_headers name)
+  target_precompile_headers(${name} REUSE_FROM migiwa_test_headers)
+  get_target_property(sources ${name} SOURCES)
+  list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  migiwa_skip_precompiled_in_vector_files(${sources})
+endfunction()
+
 function(migiwa_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LABELS;LINK")
   if(NOT arg_SOURCES OR NOT arg_LABELS OR arg_UNPARSED_ARGUMENTS)
@@ -24,6 +40,7 @@ function(migiwa_add_test name)
   target_link_libraries(${name} PRIVATE migiwa_core GTest::gtest_main ${arg_LINK})
   target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   migiwa_target_options(${name})
+  migiwa_reuse_test_headers(${name})
 
   # Grids of gamma and fits of meshes are kept for one run of ctest: the first test that asks makes them, and none is left
   # from an earlier run, which would be no test of this one.

@@ -82,7 +82,7 @@ CFL rule, which both programs have: jets in the corner pass 8 m/s, where 0.4 h w
 the time of one processor, the two programs in turns; medians, and of the ratio the quartiles, too. What no other load
 disturbs is the number of instructions, of two times, less what the start takes:
 
-    valgrind --tool=cachegrind --cache-sim=no build/release/tests/hard_cases/guarded_probe scene scenes/dam_break.json 0.15
+    valgrind --tool=cachegrind --cache-sim=no build/dev/tests/hard_cases/guarded_probe scene scenes/dam_break.json 0.15
 
 and the same of `unguarded_probe`.
 
