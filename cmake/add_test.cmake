@@ -1,9 +1,9 @@
 # migiwa_add_test(NAME SOURCES file... LABELS label... [LINK library...] [TIMEOUT seconds])
 #
 # One GoogleTest program over migiwa_core, every TEST of it known to ctest by its own name. Labels say what a test
-# needs: unit (core only, short), accuracy (compares with slow quadratures), simulation (runs a scene), hard (a case of scenes/hard), render (a
-# picture: needs EGL), window (needs a display), threads (worth running under the thread sanitizer). The target
-# tests_LABEL builds all programs with that label.
+# needs: unit (core only, short), accuracy (compares with slow quadratures), simulation (runs a scene), hard (a case of
+# scenes/hard), golden (states to the last bit), render (a picture: needs EGL), window (needs a display), threads (worth
+# running under the thread sanitizer). The target tests_LABEL builds all programs with that label.
 include(GoogleTest)
 find_package(GTest REQUIRED)
 

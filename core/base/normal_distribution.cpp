@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 namespace {
@@ -43,20 +45,74 @@ double integrate(const std::array<Node, N>& rule, double a, double b, const F& f
 }
 
 double normalDensity(double x) {
-  return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
+  return portable::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
 }
+
+/// P(X < -x) for x > 0 as slowly as needed: near zero the series sum x^(2n + 1) / (2n + 1)!! of Marsaglia
+/// (2004), beyond it Laplace's continued fraction.
+double tailBySums(double x) {
+  constexpr int kTerms = 200;
+  if (x < 1.5) {
+    double term = x, sum = x;
+    for (int n = 1; n < kTerms; ++n) sum += term *= x * x / (2 * n + 1);
+    return 0.5 - normalDensity(x) * sum;
+  }
+  double fraction = x;
+  for (int n = kTerms; n > 0; --n) fraction = x + n / fraction;
+  return normalDensity(x) / fraction;
+}
+
+/// The tail by Taylor's series about the nearest of evenly spaced points: a table in place of the exponential
+/// function.
+class TailTable {
+ public:
+  TailTable() {
+    for (int k = 0; k < kPoints; ++k) {
+      const double x = k * kSpacing;
+      Terms& terms = terms_[static_cast<std::size_t>(k)];
+      terms[0] = tailBySums(x);
+      // The n-th derivative of the density is (-1)^n He_n(x) times it; He_n+1 = x He_n - n He_n-1.
+      double before = 0, hermite = 1, factorial = 1, sign = -1;
+      for (std::size_t n = 1; n < terms.size(); ++n) {
+        factorial *= static_cast<double>(n);
+        terms[n] = sign * normalDensity(x) * hermite / factorial;
+        sign = -sign;
+        const double next = x * hermite - static_cast<double>(n - 1) * before;
+        before = hermite, hermite = next;
+      }
+    }
+  }
+  /// P(X < -x) for x in [0, kEnd).
+  double at(double x) const {
+    const double point = std::floor(x / kSpacing + 0.5), t = x - point * kSpacing;
+    const Terms& terms = terms_[static_cast<std::size_t>(point)];
+    double sum = 0;
+    for (std::size_t n = terms.size(); n-- > 0;) sum = sum * t + terms[n];
+    return sum;
+  }
+  static constexpr double kEnd = 9;
+
+ private:
+  using Terms = std::array<double, 14>;
+  static constexpr double kSpacing = 0.125;
+  static constexpr int kPoints = static_cast<int>(kEnd / kSpacing) + 1;
+  std::array<Terms, kPoints> terms_;
+};
 
 }  // namespace
 
 double normalCdf(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+  static const TailTable table;
+  const double far = std::abs(x);
+  const double tail = far < TailTable::kEnd ? table.at(far) : std::isnan(x) ? x : tailBySums(far);
+  return x < 0 ? tail : 1 - tail;
 }
 
 double normalQuantile(double p) {
   p = std::clamp(p, 1e-12, 1 - 1e-12);
   // Abramowitz & Stegun 26.2.23 to 5e-4, then one step of Halley's method, which takes that to its cube.
   const double tail = std::min(p, 1 - p);
-  const double t = std::sqrt(-2 * std::log(tail));
+  const double t = std::sqrt(-2 * portable::log(tail));
   const double start =
       t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
   const double x = p < 0.5 ? -start : start;
@@ -68,10 +124,10 @@ double bivariateNormalCdf(double x, double y, double r) {
   if (r > 0.9999) return normalCdf(std::min(x, y));
   if (r < -0.9999) return std::max(0.0, normalCdf(x) + normalCdf(y) - 1);
   // Drezner & Wesolowsky 1990: the derivative by the correlation is the density, integrated over the angle.
-  const double angle = std::asin(r);
+  const double angle = portable::asin(r);
   const auto density = [&](double theta) {
-    const double c = std::cos(theta);
-    return std::exp(-(x * x + y * y - 2 * x * y * std::sin(theta)) / (2 * c * c));
+    const double c = portable::cos(theta);
+    return portable::exp(-(x * x + y * y - 2 * x * y * portable::sin(theta)) / (2 * c * c));
   };
   // The density changes faster the nearer |r| is to 1, and fastest at the far end.
   const double strength = std::abs(r), middle = 0.8 * angle;

@@ -3,12 +3,21 @@
 
 #include <numbers>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 #include "core/base/fields.h"
+#include "core/base/portable_math.h"
 #include "core/base/types.h"
 
 namespace migiwa {
+
+/// The right-handed turn by an angle (rad) about a unit axis, after Rodrigues.
+inline Eigen::Matrix3d rotationAbout(const Vec3d& axis, double angle) {
+  const double sine = portable::sin(angle), cosine = portable::cos(angle);
+  Eigen::Matrix3d across;  // of the cross product with the axis
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return cosine * Eigen::Matrix3d::Identity() + sine * across + (1 - cosine) * (axis * axis.transpose());
+}
 
 struct Rotation {
   Vec3d axis = Vec3d::UnitY();
@@ -25,7 +34,7 @@ struct Rotation {
   }
   Eigen::Matrix3d matrix() const {
     if (degrees == 0) return Eigen::Matrix3d::Identity();
-    return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
+    return rotationAbout(axis.normalized(), degrees * std::numbers::pi / 180);
   }
 };
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 Directions fibonacciDirections(int count) {
@@ -11,8 +13,8 @@ Directions fibonacciDirections(int count) {
   for (int k = 0; k < count; ++k) {
     const double z = 1 - (2.0 * k + 1) / count;
     const double radius = std::sqrt(1 - z * z);
-    set.x.push_back(static_cast<float>(radius * std::cos(golden * k)));
-    set.y.push_back(static_cast<float>(radius * std::sin(golden * k)));
+    set.x.push_back(static_cast<float>(radius * portable::cos(golden * k)));
+    set.y.push_back(static_cast<float>(radius * portable::sin(golden * k)));
     set.z.push_back(static_cast<float>(z));
   }
   return set;

@@ -6,6 +6,9 @@
 #include <numbers>
 #include <string>
 
+#include "core/base/portable_math.h"
+#include "core/base/rotation.h"
+
 namespace migiwa {
 
 namespace {
@@ -92,12 +95,12 @@ void Motion::describe(FieldVisitor& visitor) {
 Pose Motion::at(double time) const {
   const double moving = std::clamp(time, start, stop) - start;
   const Keyframe frame = between(keyframes, time, interpolation);
-  const double sine = oscillates ? std::sin(2 * std::numbers::pi * moving / period) : 0;
+  const double sine = oscillates ? portable::sin(2 * std::numbers::pi * moving / period) : 0;
   Pose pose = Pose::Identity();
   pose.translation() = moving * velocity + sine * amplitude + frame.translate;
   if (turns) {
     const double degrees = moving * degreesPerSecond + sine * swing + frame.degrees;
-    pose.linear() = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
+    pose.linear() = rotationAbout(axis.normalized(), degrees * std::numbers::pi / 180);
     pose.translation() += point - pose.linear() * point;
   }
   return pose;

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 namespace {
@@ -177,7 +179,7 @@ Vec3d Polynomial::foot(const Vec3d& p) const {
   if (bend * reach > 0.5) {
     for (const double angle : {0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75}) {
       const double turn = angle * std::numbers::pi;
-      const Vec3d other = refine(p.x() + reach * std::cos(turn), p.y() + reach * std::sin(turn));
+      const Vec3d other = refine(p.x() + reach * portable::cos(turn), p.y() + reach * portable::sin(turn));
       if ((other - p).norm() < (best - p).norm()) best = other;
     }
   }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 namespace {
@@ -114,7 +116,7 @@ void Sphere::wireframe(const Bounds&, std::vector<LineSegment>& out) const {
     Vec3d from = center + radius * u;
     for (int k = 1; k <= kSegments; ++k) {
       const double angle = 2 * std::numbers::pi * k / kSegments;
-      const Vec3d to = center + radius * (std::cos(angle) * u + std::sin(angle) * v);
+      const Vec3d to = center + radius * (portable::cos(angle) * u + portable::sin(angle) * v);
       out.push_back({from.cast<float>(), to.cast<float>()});
       from = to;
     }
@@ -124,7 +126,7 @@ void Sphere::wireframe(const Bounds&, std::vector<LineSegment>& out) const {
   circle(centerExact_, z, y, radiusExact_);
   for (const double latitude : {-60.0, -30.0, 0.0, 30.0, 60.0}) {
     const double angle = latitude * std::numbers::pi / 180;
-    circle(centerExact_ + radiusExact_ * std::sin(angle) * y, x, z, radiusExact_ * std::cos(angle));
+    circle(centerExact_ + radiusExact_ * portable::sin(angle) * y, x, z, radiusExact_ * portable::cos(angle));
   }
 }
 

@@ -30,25 +30,27 @@ namespace migiwa::HWY_NAMESPACE {
 
 template <class Kernel>
 void partRange(StepState& state, const PairPush& push, std::size_t begin, std::size_t end) {
+  using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
+  const float scale = push.scale * Pair::kSlope;
   const Float4* const positions = state.paired.data();
   const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     const Pairs d;
-    const PairVector inverseReference = hn::Set(d, 1 / push.reference);
+    const PairVector inverseReference = hn::Set(d, KernelVectors<Kernel>::kValue / push.reference);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
-      const PairVector ratio = hn::Mul(KernelVectors<Kernel>::value(d, r), inverseReference);
-      PairVector force = KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, r);
+      const PairVector ratio = hn::Mul(KernelVectors<Kernel>::shape(d, r), inverseReference);
+      PairVector force = Pair::push(d, r);
       for (int p = 0; p < push.power; ++p) force = hn::Mul(force, ratio);
       x = hn::MulAdd(force, pair.x, x), y = hn::MulAdd(force, pair.y, y), z = hn::MulAdd(force, pair.z, z);
     }
     return sumLanes(x, y, z, hn::Zero(d));
   };
   const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    state.current[i] = Float4(Vec3f(state.current[i].xyz() + push.scale * sums.xyz()));
+    state.current[i] = Float4(Vec3f(state.current[i].xyz() + scale * sums.xyz()));
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
 }

@@ -36,6 +36,8 @@ namespace migiwa::HWY_NAMESPACE {
 /// n_i (xyz) and rho_i/rho0 (w).
 template <class Kernel>
 void normalsRange(StepState& state, std::size_t begin, std::size_t end) {
+  using Density = KernelVectors<Kernel>;
+  using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
   const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
@@ -45,16 +47,16 @@ void normalsRange(StepState& state, std::size_t begin, std::size_t end) {
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
-      covered = hn::Add(covered, KernelVectors<Kernel>::value(d, r));
-      const PairVector slope = KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, r);
-      x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
+      covered = hn::Add(covered, Density::shape(d, r));
+      const PairVector push = Pair::push(d, r);
+      x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
     }
     return sumLanes(x, y, z, covered);
   };
   const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
     const float mass = state.lattice.massRatio;
-    state.paired[i] =
-        Float4(Vec3f(mass * pairScale.inverseSupport * sums.xyz()), mass * (Kernel::value(0) + sums.w));
+    state.paired[i] = Float4(Vec3f(mass * Pair::kSlope * pairScale.inverseSupport * sums.xyz()),
+                             mass * (Kernel::value(0) + Density::kValue * sums.w));
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
 }
@@ -87,7 +89,7 @@ void pullOfRange(StepState& state, const TensionScale& scale, std::size_t begin,
       const PairVector t = hn::Mul(hn::Sub(one, r.q), r.q), cube = hn::Mul(hn::Mul(t, t), t);
       const PairVector far = hn::Mul(hn::Set(d, 64.0F), cube), near = hn::Sub(hn::Add(far, far), one);
       const PairVector attraction =
-          hn::Mul(cohesion, hn::Mul(hn::IfThenElse(hn::Lt(r.q, half), near, far), r.inverse));
+          hn::Mul(cohesion, hn::Div(hn::IfThenElse(hn::Lt(r.q, half), near, far), r.q));
       // Of pairs in reach only: the lists are filled up with others.
       const PairVector inReach =
           hn::IfThenElseZero(hn::Lt(r.q2, one), hn::Div(two, hn::Add(density, others.w)));

@@ -35,7 +35,7 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
       const Components others = loadComponents(before, &list[k]);
-      const PairVector value = KernelVectors<Kernel>::value(d, r);
+      const PairVector value = KernelVectors<Kernel>::shape(d, r);
       x = hn::MulAdd(value, hn::Sub(others.x, vx), x);
       y = hn::MulAdd(value, hn::Sub(others.y, vy), y);
       z = hn::MulAdd(value, hn::Sub(others.z, vz), z);
@@ -43,7 +43,8 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
     return sumLanes(x, y, z, hn::Zero(d));
   };
   const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    state.particles.velocity[i] = Float4(Vec3f(before[i].xyz() + scale * sums.xyz()));
+    state.particles.velocity[i] =
+        Float4(Vec3f(before[i].xyz() + scale * KernelVectors<Kernel>::kValue * sums.xyz()));
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
 }
@@ -71,7 +72,7 @@ void shearOfRange(const StepState& state, const Float4* velocities, Float4* out,
       const Distances<PairVector> r = distances(d, pair.squared);
       const Components others = loadComponents(velocities, &list[k]);
       // kShearWeight of q, over q^2.
-      const PairVector t = hn::Sub(one, r.q2), weight = hn::Mul(hn::Mul(t, t), hn::Mul(r.inverse, r.inverse));
+      const PairVector t = hn::Sub(one, r.q2), weight = hn::Div(hn::Mul(t, t), r.q2);
       const PairVector along =
           hn::MulAdd(hn::Sub(vx, others.x), pair.x,
                      hn::MulAdd(hn::Sub(vy, others.y), pair.y, hn::Mul(hn::Sub(vz, others.z), pair.z)));
@@ -202,7 +203,8 @@ class Viscosity final : public Effect {
       const double lattice =
           latticeSum(state.parameters.supportRatio, [](double q) { return kShearWeight(q) * q * q; });
       const double rate =
-          kinematic_ * 30 / (kFlowing * lattice) / std::pow(static_cast<double>(state.supportRadius), 2);
+          kinematic_ * 30 / (kFlowing * lattice) /
+          (static_cast<double>(state.supportRadius) * static_cast<double>(state.supportRadius));
       ImplicitShear(state, static_cast<float>(static_cast<double>(state.timeStep) * rate), buffers[0]).run();
     }
   }

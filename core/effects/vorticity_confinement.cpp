@@ -24,6 +24,7 @@ namespace migiwa::HWY_NAMESPACE {
 template <class Kernel>
 void curlRange(const StepState& state, const Float4* velocities, Float4* out, float scale, std::size_t begin,
                std::size_t end) {
+  using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
   const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
@@ -34,11 +35,10 @@ void curlRange(const StepState& state, const Float4* velocities, Float4* out, fl
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
-      const PairVector slope =
-          KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, distances(d, pair.squared));
+      const PairVector push = Pair::push(d, distances(d, pair.squared));
       const Components others = loadComponents(velocities, &list[k]);
-      const PairVector ux = hn::Mul(slope, hn::Sub(others.x, vx)), uy = hn::Mul(slope, hn::Sub(others.y, vy)),
-                       uz = hn::Mul(slope, hn::Sub(others.z, vz));
+      const PairVector ux = hn::Mul(push, hn::Sub(others.x, vx)), uy = hn::Mul(push, hn::Sub(others.y, vy)),
+                       uz = hn::Mul(push, hn::Sub(others.z, vz));
       x = hn::Add(x, hn::Sub(hn::Mul(pair.y, uz), hn::Mul(pair.z, uy)));
       y = hn::Add(y, hn::Sub(hn::Mul(pair.z, ux), hn::Mul(pair.x, uz)));
       z = hn::Add(z, hn::Sub(hn::Mul(pair.x, uy), hn::Mul(pair.y, ux)));
@@ -46,7 +46,7 @@ void curlRange(const StepState& state, const Float4* velocities, Float4* out, fl
     return sumLanes(x, y, z, hn::Zero(d));
   };
   const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    const Vec3f curl = scale * sums.xyz();
+    const Vec3f curl = scale * Pair::kSlope * sums.xyz();
     out[i] = Float4(curl, curl.norm());
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
@@ -58,6 +58,7 @@ void confineRange(const StepState& state, const Float4* vorticity, Float4* out, 
                   std::size_t begin, std::size_t end) {
   // A gradient that is a small part of w over the support radius has no direction to speak of.
   constexpr float kFlat = 0.05F;
+  using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
   const Float4* const positions = state.current.data();
   const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
@@ -67,15 +68,14 @@ void confineRange(const StepState& state, const Float4* vorticity, Float4* out, 
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
-      const PairVector slope =
-          KernelVectors<PairKernel<Kernel>>::slopeOverDistance(d, distances(d, pair.squared));
-      const PairVector rise = hn::Mul(slope, hn::Sub(loadComponents(vorticity, &list[k]).w, own));
+      const PairVector push = Pair::push(d, distances(d, pair.squared));
+      const PairVector rise = hn::Mul(push, hn::Sub(loadComponents(vorticity, &list[k]).w, own));
       x = hn::MulAdd(rise, pair.x, x), y = hn::MulAdd(rise, pair.y, y), z = hn::MulAdd(rise, pair.z, z);
     }
     return sumLanes(x, y, z, hn::Zero(d));
   };
   const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    const Vec3f gradient = scale * sums.xyz();
+    const Vec3f gradient = scale * Pair::kSlope * sums.xyz();
     const float least = kFlat * vorticity[i].w * pairScale.inverseSupport;
     const float length = gradient.norm() + least;
     out[i] = length > 0 ? Float4(Vec3f(gradient.cross(vorticity[i].xyz()) / length)) : Float4();

@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 namespace {
@@ -23,7 +25,7 @@ std::vector<std::array<double, 2>> discLattice(double radius) {
     std::vector<std::array<double, 2>> places;
     for (int i = -reach; i <= reach; ++i)
       for (int j = -reach; j <= reach; ++j)
-        if (std::hypot(i + shift, j + shift) <= radius) places.push_back({i + shift, j + shift});
+        if (portable::hypot(i + shift, j + shift) <= radius) places.push_back({i + shift, j + shift});
     const double error = std::abs(static_cast<double>(places.size()) - std::numbers::pi * radius * radius);
     if (places.empty() || error >= least) continue;
     least = error;
@@ -108,7 +110,7 @@ double Emitter::count(double spacing, double time) const {
   const double flowing = std::min(time, stop) - start;
   if (flowing < 0) return 0;
   const double volume = area() * (mouthSpeed() * flowing + 2 * spacing);
-  return std::min(volume / std::pow(spacing, 3), static_cast<double>(particles));
+  return std::min(volume / (spacing * spacing * spacing), static_cast<double>(particles));
 }
 
 Bounds Emitter::bounds() const {
@@ -139,7 +141,7 @@ MouthLayer mouthLayer(const Emitter& emitter, double spacing) {
       }
     }
   }
-  layer.thickness = static_cast<double>(layer.places.size()) * std::pow(spacing, 3) / emitter.area();
+  layer.thickness = static_cast<double>(layer.places.size()) * (spacing * spacing * spacing) / emitter.area();
   return layer;
 }
 

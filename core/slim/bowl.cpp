@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 double bowlDistance(const Bowl& bowl, const Vec3d& p, Vec3d& normal) {
   const Vec3d q = p - bowl.center;
-  const double length = q.norm(), across = std::hypot(q.x(), q.z());
+  const double length = q.norm(), across = portable::hypot(q.x(), q.z());
   Vec3d foot;  // on the half sphere, or on the cylinder
   if (q.y() <= 0) {
     foot = length > 0 ? Vec3d(bowl.radius / length * q) : Vec3d(0, -bowl.radius, 0);
@@ -37,7 +39,7 @@ OrientedPoints bowlPoints(const Bowl& bowl, std::size_t count) {
       // Even in height and by the golden angle around: a Fibonacci set on each part.
       const double along = (static_cast<double>(k) + 0.5) / static_cast<double>(n);
       const double angle = kPi * (3 - std::sqrt(5.0)) * static_cast<double>(k);
-      Vec3d around(std::cos(angle), 0, std::sin(angle)), normal, foot;
+      Vec3d around(portable::cos(angle), 0, portable::sin(angle)), normal, foot;
       if (part < 2) {
         // By Archimedes, a sphere has as much area as its cylinder at the same height: the way goes down from
         // the rim to the bottom at one speed.
@@ -55,8 +57,8 @@ OrientedPoints bowlPoints(const Bowl& bowl, std::size_t count) {
         const double ratio = half / bowl.radius;
         double turn = along * kPi;
         for (int step = 0; step < 20; ++step)
-          turn -= (turn + ratio * std::sin(turn) - along * kPi) / (1 + ratio * std::cos(turn));
-        normal = std::cos(turn) * around + std::sin(turn) * Vec3d::UnitY();
+          turn -= (turn + ratio * portable::sin(turn) - along * kPi) / (1 + ratio * portable::cos(turn));
+        normal = portable::cos(turn) * around + portable::sin(turn) * Vec3d::UnitY();
         foot = bowl.radius * around + bowl.height * Vec3d::UnitY();
       }
       const Vec3d p = bowl.center + foot + half * normal;

@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/base/portable_math.h"
+
 namespace migiwa {
 
 namespace {
@@ -104,7 +106,7 @@ void fit(const BallPoints& points, SlimNode& node) {
   Row<Degree> c;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     c = solve<Degree>(points, node);
-    const double tilt = std::hypot(c[1], c[2]);
+    const double tilt = portable::hypot(c[1], c[2]);
     // A frame along the fitted normal at the centre keeps |grad f| near 1.
     if (turn + 1 < kMostTurns && tilt < 0.02) break;
     if (turn + 1 < kMostTurns || Degree == 1) {

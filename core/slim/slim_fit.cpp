@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/bounds.h"
+#include "core/base/portable_math.h"
 #include "core/slim/local_fit.h"
 #include "core/slim/point_levels.h"
 
@@ -177,7 +178,7 @@ std::vector<SlimNode> fitSlim(const OrientedPoints& points, const SlimFitOptions
     std::vector<SlimNode> nodes = covering.cover(static_cast<float>(high), 0, {});
     if (progress) progress((round + 1.0) / kMostCoverings);
     const auto missed = [&](const std::vector<SlimNode>& found) {
-      return std::abs(std::log(static_cast<double>(found.size()) / wanted));
+      return std::abs(portable::log(static_cast<double>(found.size()) / wanted));
     };
     missing *= static_cast<double>(nodes.size()) /
                std::max(1.0, covering.estimate(static_cast<float>(high)) * missing);

@@ -28,71 +28,84 @@ struct ErrorSum {
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
-/// What the neighbours of a particle add up to.
-struct NeighbourSums {
-  float covered;        ///< sum of W, the particle itself left out
-  float squaredSlopes;  ///< sum of the squared slopes of the pair kernel
-  Vec3f gradient;       ///< sum of the gradients of the pair kernel, times the support radius squared
-};
-
-/// Of a pair on one point they are not.
-HWY_INLINE bool isFinite(const NeighbourSums& sums) {
-  return std::isfinite(sums.squaredSlopes);
-}
-
+/// four: the sum of the pair kernel's pushes, and that of the density kernel's shape, the particle itself
+/// left out; fifth: the sum of the pair kernel's squared slopes. Without the kernels' constants.
 template <class Kernel, class Centre>
-HWY_INLINE NeighbourSums sumNeighbours(const StepState& state, const Centre& centre, std::size_t i) {
+HWY_INLINE PairSums sumNeighbours(const StepState& state, const Centre& centre, std::size_t i) {
   using Density = KernelVectors<Kernel>;
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
   const Float4* const others = state.current.data();
   PairVector covered = hn::Zero(d), slopes = hn::Zero(d), x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+  Coincidence<Pair> coincidence;
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
   prefetchLists(list.data());
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const PairOffsets pair = centre.to(loadComponents(others, &list[k]), &list[k]);
     const Distances<PairVector> r = distances(d, pair.squared);
-    covered = hn::Add(covered, Density::value(d, r));
-    const PairVector slope = Pair::slopeOverDistance(d, r);
-    slopes = hn::MulAdd(hn::Mul(slope, slope), r.q2, slopes);
-    x = hn::MulAdd(slope, pair.x, x), y = hn::MulAdd(slope, pair.y, y), z = hn::MulAdd(slope, pair.z, z);
+    covered = hn::Add(covered, Density::shape(d, r));
+    const PairVector push = Pair::push(d, r);
+    slopes = hn::Add(slopes, Pair::squaredSlope(d, r, push));
+    x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
+    coincidence.meet(r.q2);
   }
   const Float4 sums = sumLanes(x, y, z, covered);
-  return {sums.w, hn::GetLane(hn::SumOfLanes(d, slopes)), sums.xyz()};
+  return {sums, sumLanes(slopes), coincidence.met(sums)};
 }
 
 template <class Kernel>
 stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t end) {
+  using Density = KernelVectors<Kernel>;
+  using Pair = KernelVectors<PairKernel<Kernel>>;
+  const Pairs d;
   const float massRatio = state.lattice.massRatio;
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
   const bool added = state.addsWallDensity();
   const PairScale scale(state);
+  const PairVector one = hn::Set(d, 1.0F), zero = hn::Zero(d);
   const auto ofNeighbours = [&state](const auto& centre, std::size_t i)
                                 HWY_ATTR { return sumNeighbours<Kernel>(state, centre, i); };
   stages::ErrorSum error;
-  const auto solve = [&](std::size_t i, const NeighbourSums& sums) HWY_ATTR {
-    const float inverseGamma = added ? 1 : 1 / state.gamma[i];
-    float density = massRatio * (Kernel::value(0) + sums.covered) * inverseGamma;
-    if (added) density += 1 - state.gamma[i];
-    const float constraint = std::max(density - 1, 0.0F);
-    float lambda = 0;
-    if (constraint > 0) {
-      Vec3f gradient = massRatio * (scale.inverseSupport * sums.gradient);
-      if (const std::uint32_t slot = state.wallSlot[i]; slot != StepState::kNoWall)
-        gradient -= (added ? 1 : density) * state.wallSlots[slot].sample.pairGradient;
-      const float squaredGradients =
-          (gradient.squaredNorm() + massRatio * massRatio * sums.squaredSlopes) * inverseGamma * inverseGamma;
-      lambda = -constraint / (squaredGradients + epsilon);
+  // Also where the constraint is zero: which particles those are, nobody could predict.
+  const auto solve = [&](std::size_t first, std::size_t count, const Float4* four,
+                         const float* fifth) HWY_ATTR {
+    const Components sums = loadSome(four, kPairs);
+    const PairVector gamma = loadSome(&state.gamma[first], count);
+    const PairVector inverseGamma = added ? one : hn::Div(one, gamma);
+    PairVector density = hn::Mul(
+        hn::MulAdd(hn::Set(d, massRatio * Density::kValue), sums.w, hn::Set(d, massRatio * Kernel::value(0))),
+        inverseGamma);
+    if (added) density = hn::Add(density, hn::Sub(one, gamma));
+    const PairVector constraint = hn::Max(hn::Sub(density, one), zero);
+    const Vectors wall = gatherAtWalls(state.wallSlot.data(), first, count, [&state](std::size_t i) {
+      return state.wallSlots[state.wallSlot[i]].sample.pairGradient;
+    });
+    const PairVector toGradient = hn::Set(d, massRatio * scale.inverseSupport * Pair::kSlope);
+    const PairVector fall = added ? one : density;
+    const PairVector x = hn::NegMulAdd(fall, wall.x, hn::Mul(toGradient, sums.x));
+    const PairVector y = hn::NegMulAdd(fall, wall.y, hn::Mul(toGradient, sums.y));
+    const PairVector z = hn::NegMulAdd(fall, wall.z, hn::Mul(toGradient, sums.z));
+    const float slope = massRatio * Pair::kSlope;
+    const PairVector squared = hn::MulAdd(
+        x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, hn::Mul(hn::Set(d, slope * slope), hn::LoadU(d, fifth)))));
+    const PairVector squaredGradients = hn::Mul(squared, hn::Mul(inverseGamma, inverseGamma));
+    const PairVector lambda =
+        hn::Sub(zero, hn::Div(constraint, hn::Add(squaredGradients, hn::Set(d, epsilon))));
+    storeSome(density, &state.density[first], count);
+    storeSome(lambda, &state.lambda[first], count);
+    Components paired = loadSome(&state.current[first], count);
+    paired.w = divideByGamma ? hn::Mul(lambda, inverseGamma) : lambda;
+    storeSome(paired, &state.paired[first], count);
+    alignas(32) float errors[kPairs];
+    hn::Store(constraint, d, errors);
+    for (std::size_t k = 0; k < count; ++k) {
+      error.sum += static_cast<double>(errors[k]);
+      error.squares += static_cast<double>(errors[k] * errors[k]);
+      error.max = std::max(error.max, errors[k]);
     }
-    state.density[i] = density;
-    state.lambda[i] = lambda;
-    state.paired[i] = Float4(state.current[i].xyz(), divideByGamma ? lambda * inverseGamma : lambda);
-    error.sum += static_cast<double>(constraint);
-    error.squares += static_cast<double>(constraint * constraint);
-    error.max = std::max(error.max, constraint);
   };
-  forPairs(state.current.data(), scale, begin, end, ofNeighbours, solve);
+  forBlocks(state.current.data(), scale, begin, end, ofNeighbours, solve);
   return error;
 }
 

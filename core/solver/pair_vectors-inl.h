@@ -8,11 +8,13 @@
 #define MIGIWA_PAIR_VECTORS_INL_H
 #endif
 
+#include <algorithm>
 #include <cmath>
 
 #include <hwy/highway.h>
 
 #include "core/base/guard.h"
+#include "core/base/sum_lanes-inl.h"
 #include "core/solver/coincident_pair.h"
 #include "core/solver/step_state.h"
 #include "core/sph/kernel_vectors-inl.h"
@@ -132,22 +134,39 @@ struct PartingCentre {
   }
 };
 
-/// Where pairs need a direction, all of a sum's components have the inverse distance for a factor: one stands
-/// for all.
-HWY_INLINE bool isFinite(const Float4& sums) {
-  return std::isfinite(sums.x);
+/// Whether one of the pairs is on one point, where they need a direction: then all of a sum's components were
+/// divided by zero, and one stands for all.
+HWY_INLINE bool hasCoincident(const Float4& sums) {
+  return !std::isfinite(sums.x);
 }
 
-/// use(i, sum(centre, i)) for the particles from `begin` to `end`, `positions` theirs. The inverse distance
-/// of a pair on one point is infinite, and with it the sum is not finite: no pair needs to be asked, and
-/// those particles have their turn at the end.
+/// Whether a particle's pairs have met one on one point. A push that is singular there tells by its sum, so
+/// that no pair needs to be asked; of others the shortest distance is kept.
+template <class Pair>
+class Coincidence {
+ public:
+  HWY_INLINE Coincidence() { least_ = hn::Set(Pairs(), 1.0F); }
+  HWY_INLINE void meet(PairVector q2) {
+    if constexpr (!Pair::kSingular) least_ = hn::Min(least_, q2);
+  }
+  HWY_INLINE bool met(const Float4& sums) const {
+    if constexpr (Pair::kSingular) return hasCoincident(sums);
+    return !hn::AllFalse(Pairs(), hn::Eq(least_, hn::Zero(Pairs())));
+  }
+
+ private:
+  PairVector least_;
+};
+
+/// use(i, sum(centre, i)) for the particles from `begin` to `end`, `positions` theirs. Those with a pair on
+/// one point have their turn at the end.
 template <class Sum, class Use>
 HWY_INLINE void forPairs(const Float4* positions, const PairScale& scale, std::size_t begin, std::size_t end,
                          const Sum& sum, const Use& use) {
   std::size_t first = end;
   for (std::size_t i = begin; i < end; ++i) {
     const auto sums = sum(PairCentre(positions[i], scale), i);
-    if (kGuards && HWY_UNLIKELY(!isFinite(sums))) {
+    if (kGuards && HWY_UNLIKELY(hasCoincident(sums))) {
       first = HWY_MIN(first, i);
       continue;
     }
@@ -155,7 +174,7 @@ HWY_INLINE void forPairs(const Float4* positions, const PairScale& scale, std::s
   }
   for (std::size_t i = first; i < end; ++i) {
     const PairCentre centre(positions[i], scale);
-    if (!isFinite(sum(centre, i))) use(i, sum(PartingCentre{centre, scale, i}, i));
+    if (hasCoincident(sum(centre, i))) use(i, sum(PartingCentre{centre, scale, i}, i));
   }
 }
 
@@ -169,7 +188,7 @@ HWY_INLINE void prefetchLists(const std::uint32_t* list) {
   __builtin_prefetch(reinterpret_cast<const void*>(ahead + kCacheLine));  // NOLINT
 }
 
-/// The sums over the lanes of four vectors, as one float4.
+/// The sums over the lanes of four vectors, as one float4; in one order, as sumLanes of one vector.
 HWY_INLINE Float4 sumLanes(PairVector a, PairVector b, PairVector c, PairVector e) {
 #if HWY_TARGET == HWY_SCALAR
   return {hn::GetLane(a), hn::GetLane(b), hn::GetLane(c), hn::GetLane(e)};
@@ -189,6 +208,102 @@ HWY_INLINE Float4 sumLanes(PairVector a, PairVector b, PairVector c, PairVector 
             &sums.x);
   return sums;
 #endif
+}
+
+/// What the pairs of a particle add up to.
+struct PairSums {
+  Float4 four;
+  float fifth;
+  bool coincident;  ///< whether a neighbour is on the particle's own point
+};
+
+/// Sums anew for those of `count` particles that have a pair on one point.
+template <class Sum>
+HWY_NOINLINE void partCoincident(const Float4* positions, const PairScale& scale, std::size_t first,
+                                 std::size_t count, const Sum& sum, Float4* four, float* fifth) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const PairCentre centre(positions[first + k], scale);
+    if (!sum(centre, first + k).coincident) continue;
+    const PairSums parted = sum(PartingCentre{centre, scale, first + k}, first + k);
+    four[k] = parted.four, fifth[k] = parted.fifth;
+  }
+}
+
+/// As forPairs, for PairSums, with as many particles at a time as a vector has lanes:
+/// finish(first, count, four, fifth), both arrays of kPairs.
+template <class Sum, class Finish>
+HWY_INLINE void forBlocks(const Float4* positions, const PairScale& scale, std::size_t begin, std::size_t end,
+                          const Sum& sum, const Finish& finish) {
+  alignas(32) Float4 four[kPairs] = {};
+  alignas(32) float fifth[kPairs] = {};
+  for (std::size_t first = begin; first < end; first += kPairs) {
+    const std::size_t count = HWY_MIN(kPairs, end - first);
+    bool coincident = false;
+    for (std::size_t k = 0; k < count; ++k) {
+      const PairSums sums = sum(PairCentre(positions[first + k], scale), first + k);
+      four[k] = sums.four, fifth[k] = sums.fifth;
+      coincident = coincident || sums.coincident;
+    }
+    if (kGuards && HWY_UNLIKELY(coincident)) partCoincident(positions, scale, first, count, sum, four, fifth);
+    finish(first, count, four, fifth);
+  }
+}
+
+/// Three components of a vector quantity, a particle a lane.
+struct Vectors {
+  PairVector x, y, z;
+};
+
+/// of(i) for those of `count` particles from `first` on that are near a wall, zero for the others.
+template <class OfParticle>
+HWY_INLINE Vectors gatherAtWalls(const std::uint32_t* wallSlot, std::size_t first, std::size_t count,
+                                 const OfParticle& of) {
+  const Pairs d;
+  bool any = false;
+  for (std::size_t k = 0; k < count; ++k) any |= wallSlot[first + k] != StepState::kNoWall;
+  if (!any) return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  alignas(32) float x[kPairs] = {}, y[kPairs] = {}, z[kPairs] = {};
+  for (std::size_t k = 0; k < count; ++k) {
+    if (wallSlot[first + k] == StepState::kNoWall) continue;
+    const Vec3f at = of(first + k);
+    x[k] = at.x(), y[k] = at.y(), z[k] = at.z();
+  }
+  return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+}
+
+/// A whole vector of an array, or the `count` that are left of it and zeros.
+HWY_INLINE PairVector loadSome(const float* from, std::size_t count) {
+  const Pairs d;
+  if (HWY_LIKELY(count == kPairs)) return hn::LoadU(d, from);
+  alignas(32) float some[kPairs] = {};
+  std::copy_n(from, count, some);
+  return hn::Load(d, some);
+}
+HWY_INLINE void storeSome(PairVector v, float* to, std::size_t count) {
+  const Pairs d;
+  if (HWY_LIKELY(count == kPairs)) return hn::StoreU(v, d, to);
+  alignas(32) float some[kPairs];
+  hn::Store(v, d, some);
+  std::copy_n(some, count, to);
+}
+HWY_INLINE Components loadSome(const Float4* from, std::size_t count) {
+  const Pairs d;
+  Components c;
+  if (HWY_LIKELY(count == kPairs)) {
+    hn::LoadInterleaved4(d, &from->x, c.x, c.y, c.z, c.w);
+    return c;
+  }
+  alignas(32) Float4 some[kPairs] = {};
+  std::copy_n(from, count, some);
+  hn::LoadInterleaved4(d, &some->x, c.x, c.y, c.z, c.w);
+  return c;
+}
+HWY_INLINE void storeSome(const Components& c, Float4* to, std::size_t count) {
+  const Pairs d;
+  if (HWY_LIKELY(count == kPairs)) return hn::StoreInterleaved4(c.x, c.y, c.z, c.w, d, &to->x);
+  alignas(32) Float4 some[kPairs];
+  hn::StoreInterleaved4(c.x, c.y, c.z, c.w, d, &some->x);
+  std::copy_n(some, count, to);
 }
 
 }  // namespace migiwa::HWY_NAMESPACE

@@ -15,45 +15,66 @@
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
-/// Sum over the neighbours of (w_i + w_j) times the gradient of the pair kernel, times the support radius
-/// squared.
+/// Sum over the neighbours of (w_i + w_j) times the push of the pair kernel, without its constant.
 template <class Kernel, class Centre>
-HWY_INLINE Float4 pushOfPairs(const StepState& state, const Centre& centre, std::size_t i) {
+HWY_INLINE PairSums pushOfPairs(const StepState& state, const Centre& centre, std::size_t i) {
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
   const Float4* const others = state.paired.data();
   const PairVector own = hn::Set(d, others[i].w);
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+  Coincidence<Pair> coincidence;
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
   prefetchLists(list.data());
   for (std::size_t k = 0; k < list.size(); k += kPairs) {
     const Components neighbours = loadComponents(others, &list[k]);
     const PairOffsets pair = centre.to(neighbours, &list[k]);
     const Distances<PairVector> r = distances(d, pair.squared);
-    const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::slopeOverDistance(d, r));
+    const PairVector push = hn::Mul(hn::Add(own, neighbours.w), Pair::push(d, r));
     x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
+    coincidence.meet(r.q2);
   }
-  return sumLanes(x, y, z, hn::Zero(d));
+  const Float4 sums = sumLanes(x, y, z, hn::Zero(d));
+  return {sums, 0, coincidence.met(sums)};
 }
 
 template <class Kernel>
 void moveRange(StepState& state, float weight, std::size_t begin, std::size_t end) {
+  const Pairs d;
   const bool wallPush = state.parameters.positionStep != PositionStep::paper;
   const PairScale scale(state);
+  const float toWay =
+      state.lattice.massRatio * scale.inverseSupport * KernelVectors<PairKernel<Kernel>>::kSlope;
+  const PairVector pairScale = hn::Set(d, state.supportRadius * toWay),
+                   support = hn::Set(d, state.supportRadius);
   const auto push = [&state](const auto& centre, std::size_t i)
                         HWY_ATTR { return pushOfPairs<Kernel>(state, centre, i); };
-  const auto move = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    Vec3f way = state.lattice.massRatio * (scale.inverseSupport * sums.xyz());
-    if (const std::uint32_t slot = state.wallSlot[i]; wallPush && slot != StepState::kNoWall)
-      way -= state.wallPush(i) * state.wallSlots[slot].sample.pairGradient;
-    Vec3f moved = state.current[i].xyz() + state.supportRadius * way;
-    if (weight != 1) {
-      const Vec3f before = state.previous[i].xyz();
-      moved = before + weight * (moved - before);
+  const auto move = [&](std::size_t first, std::size_t count, const Float4* four,
+                        const float* /*fifth*/) HWY_ATTR {
+    const Components sums = loadSome(four, kPairs);
+    Components at = loadSome(&state.current[first], count);
+    at.x = hn::MulAdd(pairScale, sums.x, at.x);
+    at.y = hn::MulAdd(pairScale, sums.y, at.y);
+    at.z = hn::MulAdd(pairScale, sums.z, at.z);
+    if (wallPush) {
+      const Vectors wall = gatherAtWalls(state.wallSlot.data(), first, count, [&state](std::size_t i) {
+        return Vec3f(state.wallPush(i) * state.wallSlots[state.wallSlot[i]].sample.pairGradient);
+      });
+      at.x = hn::NegMulAdd(support, wall.x, at.x);
+      at.y = hn::NegMulAdd(support, wall.y, at.y);
+      at.z = hn::NegMulAdd(support, wall.z, at.z);
     }
-    state.previous[i] = Float4(moved);
+    if (weight != 1) {
+      const Components before = loadSome(&state.previous[first], count);
+      const PairVector share = hn::Set(d, weight);
+      at.x = hn::MulAdd(share, hn::Sub(at.x, before.x), before.x);
+      at.y = hn::MulAdd(share, hn::Sub(at.y, before.y), before.y);
+      at.z = hn::MulAdd(share, hn::Sub(at.z, before.z), before.z);
+    }
+    at.w = hn::Zero(d);
+    storeSome(at, &state.previous[first], count);
   };
-  forPairs(state.paired.data(), scale, begin, end, push, move);
+  forBlocks(state.paired.data(), scale, begin, end, push, move);
 }
 
 void movePositionsOfRange(StepState& state, float weight, std::size_t begin, std::size_t end) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/base/portable_math.h"
 #include "core/solver/coincident_pair.h"
 #include "core/solver/stages.h"
 #include "core/solver/thin_walls.h"
@@ -65,12 +66,12 @@ void displace(StepState& state, std::uint32_t i, const Vec3f& way) {
 /// Spreads the members over a ball: pair by pair to opposite sides, the radii such that they fill it evenly.
 void spreadHeap(StepState& state, std::span<const Member> heap) {
   const std::size_t pairs = heap.size() / 2;
-  const double radius = std::cbrt(3 * static_cast<double>(heap.size()) / (4 * std::numbers::pi)) *
+  const double radius = portable::cbrt(3 * static_cast<double>(heap.size()) / (4 * std::numbers::pi)) *
                         static_cast<double>(state.spacing);
   for (std::size_t k = 0; k < pairs; ++k) {
     const std::uint32_t one = heap[2 * k].particle, other = heap[2 * k + 1].particle;
     const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(pairs);
-    const Vec3f way = static_cast<float>(radius * std::cbrt(share)) *
+    const Vec3f way = static_cast<float>(radius * portable::cbrt(share)) *
                       coincidentDirection(state.particles.id[one], state.particles.id[other]);
     displace(state, one, way);
     displace(state, other, -way);

@@ -20,6 +20,15 @@ TEST(NormalDistribution, QuantileUndoesTheDistribution) {
     EXPECT_NEAR(normalCdf(normalQuantile(p)), p, 1e-8 * std::min(p, 1 - p) + 1e-15) << p;
 }
 
+TEST(NormalDistribution, TailsKeepTheirDigits) {
+  for (int k = -9500; k <= 9500; ++k) {
+    const double x = 0.001 * k;
+    const double expected = static_cast<double>(
+        0.5L * std::erfc(-static_cast<long double>(x) / std::numbers::sqrt2_v<long double>));
+    ASSERT_NEAR(normalCdf(x), expected, 2e-14 * expected) << x;
+  }
+}
+
 TEST(NormalDistribution, TwoVariablesTogether) {
   for (const double r : {0.0, 0.3, 0.499, 0.5, 0.75, 0.866, 0.919, 0.93, 0.98, 0.99}) {
     for (const double sign : {-1.0, 1.0}) {

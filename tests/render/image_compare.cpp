@@ -1,7 +1,6 @@
 #include "tests/render/image_compare.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <memory>
 
@@ -23,27 +22,6 @@ double differentShare(const Image& a, const Image& b) {
   long count = 0;
   for (std::size_t i = 0; i < a.rgba.size(); i += 4) count += different(&a.rgba[i], &b.rgba[i]) ? 1 : 0;
   return static_cast<double>(count) / (static_cast<double>(a.width) * a.height);
-}
-
-Image squareMeans(const Image& image, int side) {
-  Image means((image.width + side - 1) / side, (image.height + side - 1) / side);
-  for (int y = 0; y < means.height; ++y) {
-    for (int x = 0; x < means.width; ++x) {
-      std::array<int, 4> sums{};
-      int count = 0;
-      for (int row = y * side; row < std::min((y + 1) * side, image.height); ++row) {
-        for (int column = x * side; column < std::min((x + 1) * side, image.width); ++column, ++count) {
-          const auto at = 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                               static_cast<std::size_t>(column));
-          for (std::size_t c = 0; c < 4; ++c) sums[c] += image.rgba[at + c];
-        }
-      }
-      const auto to = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(means.width) +
-                           static_cast<std::size_t>(x));
-      for (std::size_t c = 0; c < 4; ++c) means.rgba[to + c] = static_cast<std::uint8_t>(sums[c] / count);
-    }
-  }
-  return means;
 }
 
 Image differencePicture(const Image& expected, const Image& found) {

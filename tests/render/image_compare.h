@@ -15,8 +15,6 @@ inline constexpr double kAllowedShare = 0.01;
 
 /// The share of pixels that differ by more than kTolerance in a channel; 1 for different sizes.
 double differentShare(const Image& a, const Image& b);
-/// Means over squares of `side` pixels; smaller ones at the right and lower edge.
-Image squareMeans(const Image& image, int side);
 /// Grey where they agree, red where they differ.
 Image differencePicture(const Image& expected, const Image& found);
 /// Nothing when there is no such PNG.

@@ -2,12 +2,12 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "core/effects/effect.h"
 #include "core/solver/coincident_pair.h"
 #include "core/solver/stages.h"
 #include "tests/support/dense_tank.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/scalar_passes.h"
 #include "tests/support/test_effects.h"
 
@@ -15,19 +15,7 @@ namespace migiwa {
 namespace {
 
 using testing::DenseTank;
-
-/// Runs a check once for each instruction set, and sets the processor's own again.
-template <class Check>
-void onEveryTarget(const Check& check) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
+using testing::onEveryTarget;
 
 TEST(VectorPasses, ThereIsAScalarOneToCompareWith) {
   bool scalar = false;

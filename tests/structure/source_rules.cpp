@@ -272,6 +272,31 @@ Violations checkIncludeStyle(const std::vector<SourceFile>& files) {
   return violations;
 }
 
+Violations checkPortability(const std::vector<SourceFile>& files) {
+  // What differs between libraries, their versions or processors in its last digit; names that nothing else
+  // has.
+  static const std::regex unequal(
+      "\\bstd::(a?(sin|cos|tan)h?|atan2|exp[2m]?1?|log(2|10|1p)?|pow|cbrt|hypot|erfc?|[lt]gamma)f?\\b|"
+      "\\bAngleAxis|\\bApproximateReciprocal|\\b(SumOf|Reduce)(Lanes|Sum)\\b");
+  // These reach no particle: numbers for people, and cameras.
+  static const std::vector<std::string_view> free{"core/base/portable_math.", "core/study/",
+                                                  "core/scene/default_camera.cpp",
+                                                  "core/scene/particle_limit.cpp"};
+  Violations violations;
+  for (const SourceFile& file : files) {
+    if (!file.path.starts_with("core/") || beginsWithOneOf(file.path, free)) continue;
+    const std::vector<std::string> lines = linesOf(file.text);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      std::smatch match;
+      const std::string code = lines[i].substr(0, lines[i].find("//"));
+      if (std::regex_search(code, match, unequal))
+        violations.push_back(at(file, i + 1) + ": " + match.str() +
+                             " is not the same on every machine; see core/base/portable_math.h");
+    }
+  }
+  return violations;
+}
+
 Violations checkHabits(const std::vector<SourceFile>& files) {
   // Written so that this file does not hold the words itself.
   static const std::regex unfinished(

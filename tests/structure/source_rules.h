@@ -27,6 +27,9 @@ Violations checkBorders(const std::vector<SourceFile>& files);
 /// Quoted includes name a file of ours from the repository's root; anything else is in angle brackets.
 Violations checkIncludeStyle(const std::vector<SourceFile>& files);
 
+/// Nothing in the physics calls what differs in its last digit between machines.
+Violations checkPortability(const std::vector<SourceFile>& files);
+
 /// Headers say what they are for and are guarded; no file is too long or keeps notes about unfinished work.
 Violations checkHabits(const std::vector<SourceFile>& files);
 

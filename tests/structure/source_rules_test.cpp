@@ -91,6 +91,16 @@ TEST(Habits, HeadersSayWhatTheyAreForAndAreGuarded) {
   expectNone(checkHabits({file("core/base/a-inl.h", "// Compiled for every instruction set.\n")}));
 }
 
+TEST(Portability, NoFunctionWhoseLastDigitDiffersReachesParticles) {
+  expectNone(checkPortability({file("core/slim/a.cpp", "a = std::sqrt(b) + portable::sin(c);  // std::sin\n"),
+                               file("core/study/a.cpp", "a = std::log10(b);\n")}));
+  expect(checkPortability({file("core/slim/a.cpp", "a = 1;\nb = std::sin(a);\n")}), {"core/slim/a.cpp:2"});
+  expect(checkPortability({file("core/solver/a.cpp", "a = std::pow(b, 2) + std::hypot(c, d);\n")}),
+         {"std::pow"});
+  expect(checkPortability({file("core/sph/a-inl.h", "// A\nhn::ApproximateReciprocalSqrt(v)\n")}),
+         {"core/sph/a-inl.h:2"});
+}
+
 TEST(Habits, NoFileIsTooLongOrUnfinished) {
   std::string text;
   for (int i = 0; i < 500; ++i) text += "\n";

@@ -58,6 +58,9 @@ TEST(Tree, KeepsItsBorders) {
 TEST(Tree, NamesItsIncludesFromTheRoot) {
   expectNone(checkIncludeStyle(tree()));
 }
+TEST(Tree, ComputesTheSameOnEveryMachine) {
+  expectNone(checkPortability(tree()));
+}
 TEST(Tree, KeepsItsHabits) {
   expectNone(checkHabits(tree()));
 }

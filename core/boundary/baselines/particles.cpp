@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/portable_math.h"
 #include "core/boundary/baselines/baselines.h"
 #include "core/boundary/baselines/boundary_particles.h"
 #include "core/sph/kernels.h"
@@ -27,8 +28,8 @@ float restingDepth(double spacing, double support) {
     double sum = 0;
     for (int j = -reach; j <= reach; ++j)
       for (int i = -reach - 1; i <= reach; ++i)
-        sum +=
-            static_cast<double>(Kernel::value(static_cast<float>(std::hypot(height, i + x, j + z) / ratio)));
+        sum += static_cast<double>(
+            Kernel::value(static_cast<float>(portable::hypot(height, i + x, j + z) / ratio)));
     return sum;
   };
   double lacking = 0, whole = layer(0, 0, 0);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/base/portable_math.h"
 #include "core/sph/kernels.h"
 
 namespace migiwa {
@@ -45,7 +46,7 @@ double underTent(int x, int y, int z) {
     for (int j = -kSamples; j < kSamples; ++j) {
       for (int i = -kSamples; i < kSamples; ++i) {
         const double u = (i + 0.5) / kSamples, v = (j + 0.5) / kSamples, w = (k + 0.5) / kSamples;
-        const double q = std::hypot(x + u, y + v, z + w) / KernelStencil::kPerSupport;
+        const double q = portable::hypot(x + u, y + v, z + w) / KernelStencil::kPerSupport;
         sum += static_cast<double>(Kernel::value(static_cast<float>(q))) * (1 - std::abs(u)) *
                (1 - std::abs(v)) * (1 - std::abs(w));
       }

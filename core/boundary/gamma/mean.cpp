@@ -3,6 +3,7 @@
 // h/2. Off by up to 1/4 at a right-angled edge whatever the weights: the error of the paper's Figure 3.
 #include <cmath>
 
+#include "core/base/portable_math.h"
 #include "core/boundary/gamma/gamma_methods.h"
 #include "core/sph/kernels.h"
 
@@ -46,7 +47,7 @@ class MeanGamma final : public GammaMethod {
     const Vec3f offset = (p - piece.foot) / support_;
     const float squared = offset.squaredNorm();
     if (squared >= 1) return;
-    const float weight = std::exp(-2 * squared);
+    const auto weight = static_cast<float>(portable::exp(-2 * static_cast<double>(squared)));
     // Moving the point moves the foot with it along the piece; the rest of the offset grows one for one.
     const Vec3f weightGradient = -4 * weight * offset;
     const float e = piece.planeDistance / support_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
 #include "core/boundary/gamma/gamma_methods.h"
 #include "core/sph/kernels.h"
 #include "core/sph/radial_integrals.h"
@@ -28,8 +29,8 @@ class MonteCarloGamma final : public GammaMethod {
       a -= std::floor(a), b -= std::floor(b), c -= std::floor(c);
       const double z = 1 - 2 * a, across = std::sqrt(std::max(1 - z * z, 0.0)),
                    angle = 2 * std::numbers::pi * b;
-      const Vec3f direction(static_cast<float>(across * std::cos(angle)),
-                            static_cast<float>(across * std::sin(angle)), static_cast<float>(z));
+      const Vec3f direction(static_cast<float>(across * portable::cos(angle)),
+                            static_cast<float>(across * portable::sin(angle)), static_cast<float>(z));
       const float r = radiusOfMass(static_cast<float>(c));
       const float density = std::max(Kernel::value(r), 1e-20F);
       samples_.push_back({r * direction, -Kernel::derivative(r) / density * direction,

@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/base/sum_lanes-inl.h"
 #include "core/boundary/gamma/kernel_lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,9 +31,9 @@ struct Sums {
   }
 
   RaySums total() const {
-    const D d;
-    const auto sum = [&](V lanes) HWY_ATTR { return hn::GetLane(hn::SumOfLanes(d, lanes)); };
-    return {sum(mass), {sum(x), sum(y), sum(z)}, {sum(pairX), sum(pairY), sum(pairZ)}};
+    return {sumLanes(mass),
+            {sumLanes(x), sumLanes(y), sumLanes(z)},
+            {sumLanes(pairX), sumLanes(pairY), sumLanes(pairZ)}};
   }
 };
 
