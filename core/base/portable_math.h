@@ -10,7 +10,7 @@ namespace migiwa::portable {
 /// Within 2e-16 for |angle| < 1e6 rad; beyond it, that of an angle within 1e-16 of its size.
 double sin(double angle);
 double cos(double angle);
-/// Of y in [-1, 1] (NaN otherwise), within 6e-16; in [-pi/2, pi/2].
+/// Of y in [-1, 1] (NaN otherwise), within 1e-15; in [-pi/2, pi/2].
 double asin(double y);
 /// Within 4e-16 of its size; 0 below -708, infinite above 709.
 double exp(double x);
