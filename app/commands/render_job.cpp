@@ -8,6 +8,7 @@
 #include "app/commands/option_text.h"
 #include "app/ui/number_text.h"
 #include "core/base/error.h"
+#include "core/simulation/settings.h"
 
 namespace migiwa {
 namespace {
@@ -56,7 +57,11 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
   collect([&] { requireFolderName(job.folder); });
 
   const auto addVariant = [&](const std::vector<Override>& overrides, const std::string& itsNote) {
-    collect([&] { job.variants.push_back({overrides, itsNote, readScene(options.scene, overrides)}); });
+    collect([&] {
+      Scene scene = readScene(options.scene, overrides);
+      requireSteppable(scene.boundary, scene.file);
+      job.variants.push_back({overrides, itsNote, std::move(scene)});
+    });
   };
   if (options.compare.empty()) {
     addVariant(common.overrides, "");

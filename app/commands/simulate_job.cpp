@@ -8,6 +8,7 @@
 #include "core/io/output_file.h"
 #include "core/io/particle_export.h"
 #include "core/scene/nearest_name.h"
+#include "core/simulation/settings.h"
 
 namespace migiwa {
 
@@ -22,7 +23,10 @@ class JobReader {
 
   SimulateJob read() {
     std::optional<Scene> scene;
-    collect([&] { scene = readScene(options_.scene, common_.overrides); });
+    collect([&] {
+      scene = readScene(options_.scene, common_.overrides);
+      requireSteppable(scene->boundary, scene->file);
+    });
     seconds("--until", options_.until, Range::closed(0, kLongestRun));
     writable("--report", options_.report);
     readExport(scene ? scene->stem() : "");

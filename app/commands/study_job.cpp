@@ -7,6 +7,7 @@
 #include "app/commands/option_text.h"
 #include "core/base/fields.h"
 #include "core/io/output_file.h"
+#include "core/simulation/settings.h"
 
 namespace migiwa {
 
@@ -91,6 +92,7 @@ StudyJob checkedStudyJob(const StudyOptions& options, const CommonOptions& commo
     for (std::size_t run = 1; run <= size; ++run)
       collect([&] {
         const Scene scene = readScene(plan.scene, plan.overrides(run));
+        requireSteppable(scene.boundary, scene.file);
         if (!duration) duration = scene.duration;
       });
     plan.until = options.until.value_or(duration.value_or(0));

@@ -11,6 +11,7 @@
 #include "app/viewer/window_loop.h"
 #include "core/base/error.h"
 #include "core/io/output_file.h"
+#include "core/simulation/settings.h"
 
 namespace migiwa {
 namespace {
@@ -61,6 +62,7 @@ void savePicture(const Image& image) {
 int view(const ViewOptions& options, const CommonOptions& common) {
   const Scene scene =
       readScene(options.scene.empty() ? defaultScene() : fs::path(options.scene), common.overrides);
+  requireSteppable(scene.boundary, scene.file);
   runWindow(scene, {common.threads, common.overrides, !options.paused, options.frames, savePicture});
   return kDone;
 }

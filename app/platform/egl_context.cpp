@@ -25,11 +25,6 @@ class EglContext final : public GlContext {
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
-  void makeCurrent() override {
-    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
-      throw MissingError("EGL cannot make its context current without a surface");
-    }
-  }
   std::string renderer() const override { return describeGl(); }
 
  private:

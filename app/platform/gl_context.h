@@ -8,8 +8,6 @@ namespace migiwa {
 class GlContext {
  public:
   virtual ~GlContext() = default;
-  /// Makes this the calling thread's context.
-  virtual void makeCurrent() = 0;
   /// Driver and version, such as "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
   virtual std::string renderer() const = 0;
 };

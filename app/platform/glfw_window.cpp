@@ -111,16 +111,12 @@ GlfwWindow::GlfwWindow(const std::string& title, int width, int height) : state_
                        "); on Debian: apt-get install libgl1-mesa-dri");
   }
   state_->listen();
-  makeCurrent();
+  glfwMakeContextCurrent(state_->window);
   loadGl(&glfwGetProcAddress);
   glfwSwapInterval(1);
 }
 
 GlfwWindow::~GlfwWindow() = default;
-
-void GlfwWindow::makeCurrent() {
-  glfwMakeContextCurrent(state_->window);
-}
 
 std::string GlfwWindow::renderer() const {
   return describeGl();

@@ -18,7 +18,6 @@ class GlfwWindow final : public GlContext {
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
 
-  void makeCurrent() override;
   std::string renderer() const override;
 
   bool shouldClose() const;

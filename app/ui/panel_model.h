@@ -23,6 +23,9 @@ struct RunStatus {
   std::string trouble;      ///< why
   std::string stateNote{};  ///< one line on what became of the last wish to save or load the state
   std::vector<std::string> stateFaults{};  ///< why it was not done; empty when it was
+  /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,
+  /// or after a reset.
+  std::vector<std::string> settingsFaults{};
 };
 
 /// How the scene is looked at.

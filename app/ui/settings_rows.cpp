@@ -14,7 +14,7 @@ bool wallRows(BoundaryParameters& boundary) {
   boundary.handling = static_cast<BoundaryHandling>(handling);
   ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
   rowLabel("Method of γ");
-  changed |= choice("##method", boundary.gammaMethod, gammaMethodNames());
+  changed |= choice("##method", boundary.gammaMethod, steppedGammaMethodNames());
   ImGui::EndDisabled();
   return changed;
 }

@@ -12,6 +12,15 @@ namespace {
 /// What hinders is listed as far as the panels below stay in sight.
 constexpr std::size_t kMostListed = 4;
 
+void listFaults(const std::string& title, const std::vector<std::string>& faults) {
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::TextWrapped("%s", title.c_str());
+  const std::size_t listed = std::min(faults.size(), kMostListed);
+  for (std::size_t k = 0; k < listed; ++k) ImGui::TextWrapped("%s", faults[k].c_str());
+  if (listed < faults.size()) ImGui::TextWrapped("and %zu more", faults.size() - listed);
+  ImGui::PopStyleColor();
+}
+
 void stateButtons(PanelModel& model) {
   const float width = buttonWidth(2);
   ImGui::BeginDisabled(model.run.stopped);
@@ -22,12 +31,7 @@ void stateButtons(PanelModel& model) {
   const RunStatus& run = model.run;
   if (run.stateNote.empty()) return;
   if (run.stateFaults.empty()) return faintText(run.stateNote);
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
-  ImGui::TextWrapped("%s", run.stateNote.c_str());
-  const std::size_t listed = std::min(run.stateFaults.size(), kMostListed);
-  for (std::size_t k = 0; k < listed; ++k) ImGui::TextWrapped("%s", run.stateFaults[k].c_str());
-  if (listed < run.stateFaults.size()) ImGui::TextWrapped("and %zu more", run.stateFaults.size() - listed);
-  ImGui::PopStyleColor();
+  listFaults(run.stateNote, run.stateFaults);
 }
 
 }  // namespace
@@ -51,6 +55,8 @@ void simulationPanel(PanelModel& model) {
     ImGui::TextWrapped("Stopped: %s", model.run.trouble.c_str());
     ImGui::PopStyleColor();
   }
+  if (!model.run.settingsFaults.empty())
+    listFaults("Settings not taken over, those of before stay:", model.run.settingsFaults);
   // As with the scene's text: only where there is a file beside which the state can lie.
   if (model.editor != nullptr) stateButtons(model);
 }

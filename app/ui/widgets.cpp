@@ -21,7 +21,8 @@ void rowLabel(const char* label) {
 
 bool choice(const char* id, int& index, std::span<const std::string_view> names) {
   bool changed = false;
-  const std::string current(names[static_cast<std::size_t>(index)]);
+  const auto at = static_cast<std::size_t>(index);
+  const std::string current(at < names.size() ? names[at] : "");
   if (!ImGui::BeginCombo(id, current.c_str())) return false;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool selected = static_cast<int>(i) == index;

@@ -13,7 +13,7 @@ namespace migiwa {
 std::string titleOf(std::string_view key);
 /// A label in the left column; the next widget fills the right one.
 void rowLabel(const char* label);
-/// A drop-down list over names; returns whether `index` changed.
+/// A drop-down list over names; returns whether `index` changed. It may begin beyond them.
 bool choice(const char* id, int& index, std::span<const std::string_view> names);
 /// What sliders of numbers have that span powers of ten.
 constexpr ImGuiSliderFlags kLogSlider = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic;

@@ -34,7 +34,7 @@ struct SceneChange {
 
 class SceneSession {
  public:
-  /// `scene`: as read from its file; no simulation of it may be running yet.
+  /// `scene`: as read from its file.
   SceneSession(const Scene& scene, SessionOptions options);
 
   /// Looks at the files, and says what became of a change once that is known.

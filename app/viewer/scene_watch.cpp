@@ -1,28 +1,29 @@
 #include "app/viewer/scene_watch.h"
 
+#include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <utility>
 
-#include "core/base/checksum.h"
+#include <sys/stat.h>
 
 namespace migiwa {
 
 namespace {
 
 /// File systems keep times in steps, some in steps of two seconds.
-constexpr std::chrono::seconds kYoung{3};
-
-std::uint64_t contentOf(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::uint64_t sum = kEmptyChecksum;
-  std::vector<char> piece(std::size_t{1} << 16);
-  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
-    sum = checksum(sum, piece.data(), static_cast<std::size_t>(in.gcount()));
-  return sum;
-}
+constexpr std::chrono::nanoseconds kYoung = std::chrono::seconds(3);
 
 }  // namespace
+
+std::optional<SceneWatch::Stamp> SceneWatch::stampOf(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  const auto nanoseconds = [](const timespec& time) {
+    return std::int64_t{1000000000} * time.tv_sec + time.tv_nsec;
+  };
+  return Stamp{nanoseconds(status.st_mtim), nanoseconds(status.st_ctim),
+               static_cast<std::uint64_t>(status.st_size), static_cast<std::uint64_t>(status.st_ino)};
+}
 
 void SceneWatch::setFiles(std::vector<std::filesystem::path> files) {
   files_.clear();
@@ -43,18 +44,14 @@ void SceneWatch::follow(std::vector<std::filesystem::path> files) {
 }
 
 bool SceneWatch::look(Watched& watched) {
-  std::error_code error;
-  std::optional<Stamp> stamp;
-  if (std::filesystem::is_regular_file(watched.file, error)) {
-    stamp = Stamp{std::filesystem::last_write_time(watched.file, error), 0};
-    stamp->size = std::filesystem::file_size(watched.file, error);
-    if (error) stamp.reset();
-  }
+  const std::optional<Stamp> stamp = stampOf(watched.file);
   if (stamp == watched.stamp && !watched.young) return false;
-  std::optional<std::uint64_t> content;
-  if (stamp) content = contentOf(watched.file);
+  std::optional<FileIdentity> content;
+  // Files that this one refers to are watched by themselves.
+  if (stamp) content = identityOf(std::vector{watched.file});
   watched.stamp = stamp;
-  watched.young = stamp && std::filesystem::file_time_type::clock::now() - stamp->time < kYoung;
+  const std::chrono::nanoseconds now = std::chrono::system_clock::now().time_since_epoch();
+  watched.young = stamp && now.count() - std::max(stamp->written, stamp->changed) < kYoung.count();
   return std::exchange(watched.content, content) != content;
 }
 

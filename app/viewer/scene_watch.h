@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/file_identity.h"
+
 namespace migiwa {
 
 class SceneWatch {
@@ -25,9 +27,10 @@ class SceneWatch {
   bool poll();
 
  private:
+  /// What changes with every change to a file, also where its time of writing was set back.
   struct Stamp {
-    std::filesystem::file_time_type time;
-    std::uintmax_t size = 0;
+    std::int64_t written = 0, changed = 0;  ///< since the epoch (ns)
+    std::uint64_t size = 0, number = 0;     ///< the file's own in its file system
     bool operator==(const Stamp&) const = default;
   };
   struct Watched {
@@ -35,10 +38,12 @@ class SceneWatch {
     std::optional<Stamp> stamp;  ///< when it was last read
     bool young = false;          ///< then it was so new that another change may bear the same time
     /// Of its bytes, which may be those of a large mesh; nothing: no file.
-    std::optional<std::uint64_t> content;
-    std::optional<std::uint64_t> told;  ///< the same, when a change was last told
+    std::optional<FileIdentity> content;
+    std::optional<FileIdentity> told;  ///< the same, when a change was last told
   };
 
+  /// Nothing: no ordinary file.
+  static std::optional<Stamp> stampOf(const std::filesystem::path& file);
   /// Reads the file if it seems to have changed; returns whether its content did.
   static bool look(Watched& watched);
 

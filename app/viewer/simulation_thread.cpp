@@ -18,9 +18,11 @@ std::string describe(const RunStatistics& statistics) {
   return text;
 }
 
-std::vector<std::string> texts(const InputError& error) {
+std::vector<std::string> texts(const std::exception& error) {
+  const auto* const input = dynamic_cast<const InputError*>(&error);
+  if (input == nullptr) return {error.what()};
   std::vector<std::string> result;
-  for (const Fault& fault : error.faults()) result.push_back(fault.text());
+  for (const Fault& fault : input->faults()) result.push_back(fault.text());
   return result;
 }
 
@@ -80,6 +82,11 @@ void SimulationThread::apply(const Settings& settings) {
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   wake_.notify_one();
+}
+
+std::optional<Settings> SimulationThread::takeRefusal() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(refused_, std::nullopt);
 }
 
 void SimulationThread::watchPressure(bool on) {
@@ -177,10 +184,21 @@ void SimulationThread::carryOutSettings(std::unique_lock<std::mutex>& lock) {
   const std::optional<Settings> settings = std::exchange(settings_, std::nullopt);
   if (!reset && !settings) return;
   lock.unlock();
-  const Settings wanted = settings.value_or(simulation_->settings());
-  if (reset) simulation_ = std::make_unique<Simulation>(scene_, threads_);
-  simulation_->apply(wanted);
+  std::vector<std::string> faults;
+  try {
+    if (settings) simulation_->apply(*settings);
+  } catch (const std::exception& error) {
+    faults = texts(error);
+  }
+  if (reset) {
+    auto again = std::make_unique<Simulation>(scene_, threads_);
+    again->apply(simulation_->settings());
+    simulation_ = std::move(again);
+  }
+  Settings inForce = simulation_->settings();
   lock.lock();
+  if (!faults.empty()) refused_ = std::move(inForce);
+  status_.settingsFaults = std::move(faults);
   if (reset) begin();
   publish(lock);
 }
@@ -200,7 +218,7 @@ void SimulationThread::carryOutSave(std::unique_lock<std::mutex>& lock) {
   try {
     SettledSampler none;
     writeSave(save.file, *simulation_, none, save.overrides);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     faults = texts(error);
   }
   const double time = simulation_->time();
@@ -219,7 +237,7 @@ void SimulationThread::carryOutLoad(std::unique_lock<std::mutex>& lock) {
     loaded->apply(simulation_->settings());
     readSave(file, *loaded, passedOver);
     simulation_ = std::move(loaded);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     faults = texts(error);
   }
   const double time = simulation_->time();

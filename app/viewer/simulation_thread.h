@@ -36,8 +36,11 @@ class SimulationThread {
   void step();
   /// Back to the start, with the settings of now; goes on playing if it did.
   void reset();
-  /// Takes effect with the next frame.
+  /// Takes effect with the next frame. Where the simulation cannot do with them, the status says why, and
+  /// those of before stay in force: takeRefusal() has them.
   void apply(const Settings& settings);
+  /// The settings in force where others were refused since the last call.
+  std::optional<Settings> takeRefusal();
   /// From the next frame on, frames have pressures, or none.
   void watchPressure(bool on);
 
@@ -100,7 +103,7 @@ class SimulationThread {
   std::optional<std::filesystem::path> load_;
   std::vector<std::promise<StateImage>> captures_;
   int steps_ = 0;
-  std::optional<Settings> settings_;
+  std::optional<Settings> settings_, refused_;
   bool watchPressure_;
 
   std::thread thread_;

@@ -46,6 +46,8 @@ class Viewer {
   void copyToWindow() const { target_->copyToWindow(target_->width(), target_->height()); }
 
   const Settings& settings() const { return settings_; }
+  /// Shows these from now on: those that the panels asked for were refused.
+  void setSettings(const Settings& settings) { settings_ = settings; }
   ViewState& view() { return view_; }
   ColorFieldInfo colorInfo(ColorField field) const {
     return colorFieldInfo(field, referenceSpeed_, scene_.solver.restDensity);

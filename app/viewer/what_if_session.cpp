@@ -51,10 +51,10 @@ void WhatIfSession::begin(WhatIfModel& model, SimulationThread& simulation, cons
             outcome.time = answer.time;
           }
           outcome.copy = std::move(copy);
-          outcome.moment = std::move(moment);
         } catch (const std::exception& error) {
           outcome.fault = error.what();
         }
+        outcome.moment = std::move(moment);  // also that of points before one that was refused
         return outcome;
       });
 }

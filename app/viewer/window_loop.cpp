@@ -72,6 +72,10 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
       }
     }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
+    if (const std::optional<Settings> inForce = simulation->takeRefusal()) {
+      viewer.setSettings(*inForce);
+      redraws = kFramesAfterInput;
+    }
     if (simulation->takeFrame(frame)) redraws = std::max(redraws, 1);
     const auto [width, height] = window.framebufferSize();
     last = Clock::now();

@@ -1,6 +1,7 @@
-// How a struct tells the outside world which JSON keys it has. The struct visits its fields once; reading a
-// scene, writing it with all defaults, and later its schema and its documentation are visitors of that one
-// list. Nothing here knows JSON: the readers live in core/scene.
+// How a struct tells the outside world which JSON keys it has. The struct has one list of its fields, a
+// template over the visitor; reading a scene, writing it with all defaults, its schema and its documentation
+// are visitors of that list. Writing sees the struct as const. Nothing here knows JSON: the readers live in
+// core/scene.
 #pragma once
 
 #include <array>
@@ -12,8 +13,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
+#include "core/base/file_identity.h"
 #include "core/base/types.h"
 
 namespace migiwa {
@@ -49,49 +52,64 @@ struct FieldDoc {
 struct FileName {
   std::string written;         ///< as in the scene; empty: none
   std::filesystem::path path;  ///< relative to the working folder
+  FileIdentity identity{};     ///< what was in the file when the scene was read
 
   bool empty() const { return written.empty(); }
 };
 
-/// Visits one JSON object's fields in order. A reader overwrites the values, a writer only looks at them.
-class FieldVisitor {
- public:
-  using Fields = std::function<void(FieldVisitor&)>;
+/// What a visitor may do with the values that it is shown.
+enum class Access { change, look };
 
-  virtual ~FieldVisitor() = default;
-  virtual void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) = 0;
-  virtual void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) = 0;
-  virtual void boolean(std::string_view key, bool& value, const FieldDoc& doc) = 0;
-  virtual void text(std::string_view key, std::string& value, const FieldDoc& doc) = 0;
+/// Visits one JSON object's fields in order. One list of kinds of fields, for two kinds of visitors: a
+/// FieldVisitor overwrites the values or shows them to be changed, a FieldWriter only looks at them, and
+/// visits what is const.
+template <Access kAccess>
+class BasicFieldVisitor {
+ public:
+  static constexpr bool kChanges = kAccess == Access::change;
+  template <class T>
+  using Value = std::conditional_t<kChanges, T, const T>;
+  using Fields = std::function<void(BasicFieldVisitor&)>;
+  using Element = std::function<void(BasicFieldVisitor&, std::size_t)>;
+  using Variant = std::function<void(BasicFieldVisitor&, int)>;
+
+  virtual ~BasicFieldVisitor() = default;
+  virtual void number(std::string_view key, Value<double>& value, const Range& range,
+                      const FieldDoc& doc) = 0;
+  virtual void integer(std::string_view key, Value<int>& value, const Range& range, const FieldDoc& doc) = 0;
+  virtual void boolean(std::string_view key, Value<bool>& value, const FieldDoc& doc) = 0;
+  virtual void text(std::string_view key, Value<std::string>& value, const FieldDoc& doc) = 0;
   /// A file name; relative ones are relative to what is being read.
-  virtual void file(std::string_view key, FileName& value, const FieldDoc& doc) {
+  virtual void file(std::string_view key, Value<FileName>& value, const FieldDoc& doc) {
     text(key, value.written, doc);
   }
-  virtual void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) = 0;
+  virtual void vector(std::string_view key, Value<Vec3d>& value, const FieldDoc& doc) = 0;
   /// Two numbers, such as the ends of a colour range. `present`, if given, says whether the key is there.
-  virtual void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
-                    bool* present = nullptr) = 0;
+  virtual void pair(std::string_view key, Value<std::array<double, 2>>& value, const FieldDoc& doc,
+                    Value<bool>* present = nullptr) = 0;
   /// Any number of number triples, such as the terms of a polynomial.
-  virtual void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
+  virtual void triples(std::string_view key, Value<std::vector<std::array<double, 3>>>& values,
                        const FieldDoc& doc) = 0;
   /// One of `names`; `index` is its place in the list.
-  virtual void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+  virtual void choice(std::string_view key, Value<int>& index, std::span<const std::string_view> names,
                       const FieldDoc& doc) = 0;
   /// A nested object. `present`, if given, says whether the key is there; an absent object's fields are not
   /// visited.
   virtual void object(std::string_view key, const FieldDoc& doc, const Fields& fields,
-                      bool* present = nullptr) = 0;
+                      Value<bool>* present = nullptr) = 0;
   /// An array of objects: a reader calls `element` for each entry it finds, a writer `size` times.
-  virtual void list(std::string_view key, std::size_t size, const FieldDoc& doc,
-                    const std::function<void(FieldVisitor&, std::size_t)>& element) = 0;
+  virtual void list(std::string_view key, std::size_t size, const FieldDoc& doc, const Element& element) = 0;
   /// The key that decides which further fields the object has (such as "shape"). `index` < 0 when it is not
   /// known yet or wrong; `fields` is called with a valid index only.
-  virtual void variant(std::string_view key, int& index, std::span<const std::string_view> names,
-                       const FieldDoc& doc, const std::function<void(FieldVisitor&, int)>& fields) = 0;
+  virtual void variant(std::string_view key, Value<int>& index, std::span<const std::string_view> names,
+                       const FieldDoc& doc, const Variant& fields) = 0;
   /// Reports what only the struct itself can see, such as min beyond max, at the key or, for an empty key, at
-  /// the object itself. Left out where the key is faulty already. Ignored by writers.
-  virtual void fault(std::string_view key, std::string_view message) = 0;
-  /// Reports what is valid and probably not meant, or was repaired. Ignored by writers.
+  /// the object itself. Left out where the key is faulty already. Ignored by all but readers.
+  virtual void fault(std::string_view key, std::string_view message) {
+    static_cast<void>(key);
+    static_cast<void>(message);
+  }
+  /// Reports what is valid and probably not meant, or was repaired. Ignored by all but readers.
   virtual void warning(std::string_view key, std::string_view message) {
     static_cast<void>(key);
     static_cast<void>(message);
@@ -105,12 +123,22 @@ class FieldVisitor {
 
   /// A choice held as an enum whose values count from 0 in the order of `names`.
   template <class Enum>
+  requires std::is_enum_v<Enum>
   void choice(std::string_view key, Enum& value, std::span<const std::string_view> names,
               const FieldDoc& doc) {
     int index = static_cast<int>(value);
     choice(key, index, names, doc);
-    value = static_cast<Enum>(index);
+    if constexpr (kChanges) value = static_cast<Enum>(index);
   }
 };
+
+/// Of what is read, or shown to be changed.
+using FieldVisitor = BasicFieldVisitor<Access::change>;
+/// Of what is written out: nothing that it visits changes, so that others may read it meanwhile.
+using FieldWriter = BasicFieldVisitor<Access::look>;
+
+/// `Part` as a visitor may have it: for lists of fields that both kinds of visitors go through.
+template <class Visitor, class Part>
+using Visited = typename Visitor::template Value<Part>;
 
 }  // namespace migiwa

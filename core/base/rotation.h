@@ -23,13 +23,16 @@ struct Rotation {
   Vec3d axis = Vec3d::UnitY();
   double degrees = 0;
 
-  void describe(FieldVisitor& visitor) {
-    visitor.vector("axis", axis, {"1", "Axis through the centre; any length but zero.", Presence::required});
-    visitor.number("degrees", degrees, Range::closed(-360, 360),
+  template <class Visitor>
+  static void describe(Visitor& visitor, Visited<Visitor, Rotation>& self) {
+    visitor.vector("axis", self.axis,
+                   {"1", "Axis through the centre; any length but zero.", Presence::required});
+    visitor.number("degrees", self.degrees, Range::closed(-360, 360),
                    {"degrees", "Angle of the turn, right-handed.", Presence::required});
-    if (axis.norm() < 1e-12) {
+    if constexpr (Visitor::kChanges) {
+      if (self.axis.norm() >= 1e-12) return;
       visitor.fault("axis", "expected a vector that is not zero, found [0, 0, 0]");
-      axis = Vec3d::UnitY();
+      self.axis = Vec3d::UnitY();
     }
   }
   Eigen::Matrix3d matrix() const {

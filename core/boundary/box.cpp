@@ -18,15 +18,24 @@ Box::Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotati
   prepare();
 }
 
-void Box::describe(FieldVisitor& visitor) {
-  visitor.choice("fluid", fluid_, kFluidNames,
+template <class Visitor>
+void Box::fields(Visitor& visitor, Visited<Visitor, Box>& self) {
+  visitor.choice("fluid", self.fluid_, kFluidNames,
                  {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("min", min_,
+  visitor.vector("min", self.min_,
                  {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", max_,
+  visitor.vector("max", self.max_,
                  {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
-                 [this](FieldVisitor& fields) { rotation_.describe(fields); });
+                 [&](auto& rotation) { Rotation::describe(rotation, self.rotation_); });
+}
+
+void Box::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void Box::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   if (visitor.sound({"min", "max"}) && (max_.array() <= min_.array()).any()) {
     visitor.fault("max", "expected every coordinate to be larger than that of min, found one that is not");
   } else {

@@ -15,6 +15,7 @@ class Box final : public Surface {
   Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotation = {});
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override;
@@ -33,6 +34,8 @@ class Box final : public Surface {
   const BoxGeometry* tank() const override { return fluid_ == Fluid::inside ? &geometry_ : nullptr; }
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Box>& self);
   /// Where a ray enters the box and where it leaves it; no crossing unless enter < leave.
   struct Crossing {
     float enter, leave;

@@ -70,6 +70,8 @@ struct GammaContext {
 
 /// Names for the scene's gamma method, "auto" first.
 std::span<const std::string_view> gammaMethodNames();
+/// The first of them, which a simulation can use in every step. The others are references to compare with.
+std::span<const std::string_view> steppedGammaMethodNames();
 struct PickedGamma {
   std::unique_ptr<GammaMethod> method;
   std::string name;    ///< of the method that is used

@@ -24,7 +24,8 @@ class GriddedSurface final : public Surface {
 
   std::shared_ptr<const Surface> exact() const override { return shape_; }
 
-  void describe(FieldVisitor&) override {}  // the scene describes the shape itself
+  void describe(FieldVisitor&) override {}  // the shape itself was read before
+  void describe(FieldWriter& visitor) const override { shape_->describe(visitor); }
   bool steadyDistance() const override { return !grid_.coefficients.empty(); }
   /// Within kReach of the wall, that of the splines: off by about 0.001 support radii where the wall is
   /// smooth and by 0.02 next to creases, which it rounds. Farther out in the fluid no more than kReach, and

@@ -2,15 +2,23 @@
 
 namespace migiwa {
 
-void MeshSurface::describe(FieldVisitor& visitor) {
-  describeFluid(visitor);
-  visitor.file("file", file_,
+template <class Visitor>
+void MeshSurface::fields(Visitor& visitor, Visited<Visitor, MeshSurface>& self) {
+  describeFluid(visitor, self);
+  visitor.file("file", self.file_,
                {"", "OBJ, PLY, STL, ...: triangles, or points with normals. Relative to the scene file.",
                 Presence::required});
-  describeTransform(visitor);
+  describeTransform(visitor, self);
+}
+
+void MeshSurface::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void MeshSurface::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   if (!visitor.sound({"file"})) return;
-  source_.kind = SlimSource::Kind::mesh;
-  source_.file = file_.path;
+  setFile(SlimSource::Kind::mesh, file_);
   prepare(visitor, "file");
 }
 

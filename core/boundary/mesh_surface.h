@@ -8,8 +8,11 @@ namespace migiwa {
 class MeshSurface final : public SlimSurface {
  public:
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, MeshSurface>& self);
   FileName file_;
 };
 

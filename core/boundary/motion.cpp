@@ -30,45 +30,48 @@ Keyframe between(const std::vector<Keyframe>& keyframes, double time, Interpolat
           before.degrees + way * (next->degrees - before.degrees)};
 }
 
-}  // namespace
-
-void Motion::describe(FieldVisitor& visitor) {
-  visitor.vector("velocity", velocity, {"m/s", "Constant velocity."});
+/// The keys of a motion, in the order in which they are best written.
+template <class Visitor>
+void fieldsOf(Visitor& visitor, Visited<Visitor, Motion>& motion) {
+  visitor.vector("velocity", motion.velocity, {"m/s", "Constant velocity."});
   visitor.object(
       "rotation", {"", "The axis of every turn, and a constant turn about it."},
-      [this](FieldVisitor& fields) {
-        fields.vector("axis", axis, {"1", "Any length but zero.", Presence::required});
-        fields.vector("point", point,
+      [&](auto& fields) {
+        fields.vector("axis", motion.axis, {"1", "Any length but zero.", Presence::required});
+        fields.vector("point", motion.point,
                       {"m", "A point of the axis; it moves along with the wall.", Presence::required});
-        fields.number("degrees_per_second", degreesPerSecond, kAngleRange,
+        fields.number("degrees_per_second", motion.degreesPerSecond, kAngleRange,
                       {"degrees/s", "Constant turn, right-handed."});
-        if (axis.norm() < 1e-12) {
+        if constexpr (Visitor::kChanges) {
+          if (motion.axis.norm() >= 1e-12) return;
           fields.fault("axis", "expected a vector that is not zero, found [0, 0, 0]");
-          axis = Vec3d::UnitY();
+          motion.axis = Vec3d::UnitY();
         }
       },
-      &turns);
+      &motion.turns);
   visitor.object(
       "oscillation", {"", "To and fro, as the sine of time: a wave maker, a shaker."},
-      [this](FieldVisitor& fields) {
-        fields.vector("amplitude", amplitude, {"m", "Direction and amplitude of the sway."});
-        fields.number("degrees", swing, kAngleRange,
+      [&](auto& fields) {
+        fields.vector("amplitude", motion.amplitude, {"m", "Direction and amplitude of the sway."});
+        fields.number("degrees", motion.swing, kAngleRange,
                       {"degrees", "Amplitude of a turn about the axis of rotation."});
-        fields.number("period", period, Range::positive(1e6),
+        fields.number("period", motion.period, Range::positive(1e6),
                       {"s", "Of one oscillation.", Presence::required});
       },
-      &oscillates);
-  visitor.number("start", start, Range::closed(0, 1e6),
+      &motion.oscillates);
+  visitor.number("start", motion.start, Range::closed(0, 1e6),
                  {"s", "When velocity, rotation and oscillation begin."});
-  visitor.number("stop", stop, Range::closed(0, 1e6),
+  visitor.number("stop", motion.stop, Range::closed(0, 1e6),
                  {"s", "When they end; the wall stays where it is then."});
-  if (visitor.sound({"start", "stop"}) && stop <= start)
+  if (visitor.sound({"start", "stop"}) && motion.stop <= motion.start)
     visitor.fault("stop", "expected a time after start, found an earlier one");
+  auto& keyframes = motion.keyframes;
   visitor.list(
       "keyframes", keyframes.size(), {"", "Places at given times, relative to where the wall is described."},
-      [this](FieldVisitor& fields, std::size_t at) {
-        if (at >= keyframes.size()) keyframes.emplace_back();
-        Keyframe& frame = keyframes[at];
+      [&](auto& fields, std::size_t at) {
+        if constexpr (Visitor::kChanges)
+          if (at >= keyframes.size()) keyframes.emplace_back();
+        auto& frame = keyframes[at];
         fields.number("time", frame.time, Range::closed(0, 1e6), {"s", "When.", Presence::required});
         fields.vector("translate", frame.translate, {"m", "How far from its place."});
         fields.number("degrees", frame.degrees, kAngleRange,
@@ -76,9 +79,18 @@ void Motion::describe(FieldVisitor& visitor) {
         if (at > 0 && fields.sound({"time"}) && frame.time <= keyframes[at - 1].time)
           fields.fault("time", "expected a time after that of the keyframe before, found an earlier one");
       });
-  visitor.choice("interpolation", interpolation, kInterpolationNames,
+  visitor.choice("interpolation", motion.interpolation, kInterpolationNames,
                  {"", "Between keyframes: at rest at each of them, or at a constant velocity."});
+}
 
+}  // namespace
+
+void Motion::describe(FieldWriter& visitor) const {
+  fieldsOf(visitor, *this);
+}
+
+void Motion::describe(FieldVisitor& visitor) {
+  fieldsOf(visitor, *this);
   if (!visitor.sound({"velocity", "rotation", "oscillation", "keyframes"})) return;
   const bool turned =
       (oscillates && swing != 0) ||

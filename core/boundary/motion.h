@@ -49,6 +49,7 @@ struct Motion {
 
   /// Visits the keys of the scene's object "motion", then checks what follows from them.
   void describe(FieldVisitor& visitor);
+  void describe(FieldWriter& visitor) const;
   /// From where the scene puts the wall to where it is at `time` (s).
   Pose at(double time) const;
   /// Whether two walls with these motions never move relative to each other.

@@ -26,7 +26,8 @@ class MovingSurface final : public Surface {
   /// A direction fixed to the wall a step ago, now.
   Vec3f carriedDirection(const Vec3f& direction) const { return carryTurn_ * direction; }
 
-  void describe(FieldVisitor&) override {}  // the scene describes what stands at rest
+  void describe(FieldVisitor&) override {}  // what stands at rest was read before
+  void describe(FieldWriter& visitor) const override { rest_->describe(visitor); }
   Vec3f velocity(const Vec3f& p) const override { return spin_ * p + drift_; }
   Vec3f carried(const Vec3f& p) const override { return carryTurn_ * p + carryShift_; }
   float distance(const Vec3f& p, Vec3f& normal) const override;

@@ -14,9 +14,19 @@ Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(n
   prepare();
 }
 
+template <class Visitor>
+void Plane::fields(Visitor& visitor, Visited<Visitor, Plane>& self) {
+  visitor.vector("point", self.point_, {"m", "A point of the wall.", Presence::required});
+  visitor.vector("normal", self.normal_,
+                 {"1", "Points into the fluid; any length but zero.", Presence::required});
+}
+
+void Plane::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
 void Plane::describe(FieldVisitor& visitor) {
-  visitor.vector("point", point_, {"m", "A point of the wall.", Presence::required});
-  visitor.vector("normal", normal_, {"1", "Points into the fluid; any length but zero.", Presence::required});
+  fields(visitor, *this);
   if (normal_.norm() > 1e-12) {
     prepare();
   } else {

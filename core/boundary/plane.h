@@ -12,6 +12,7 @@ class Plane final : public Surface {
   Plane(const Vec3d& point, const Vec3d& normal);
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
@@ -21,6 +22,8 @@ class Plane final : public Surface {
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Plane>& self);
   void prepare();
 
   Vec3d point_ = Vec3d::Zero();

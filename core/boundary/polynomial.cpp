@@ -70,18 +70,27 @@ Polynomial::Polynomial(const Vec3d& origin, const Vec3d& normal, const Vec3d& xA
   prepare();
 }
 
-void Polynomial::describe(FieldVisitor& visitor) {
-  visitor.vector("origin", origin_,
+template <class Visitor>
+void Polynomial::fields(Visitor& visitor, Visited<Visitor, Polynomial>& self) {
+  visitor.vector("origin", self.origin_,
                  {"m", "Centre of the ball in which the wall exists.", Presence::required});
-  visitor.vector("normal", normal_,
+  visitor.vector("normal", self.normal_,
                  {"1", "The frame's z axis, into the fluid; any length but zero.", Presence::required});
-  visitor.vector("x_axis", xAxis_,
+  visitor.vector("x_axis", self.xAxis_,
                  {"1", "The frame's x axis; made perpendicular to the normal.", Presence::required});
-  visitor.number("radius", radius_, Range::positive(kLargestCoordinate),
+  visitor.number("radius", self.radius_, Range::positive(kLargestCoordinate),
                  {"m", "Radius of the ball.", Presence::required});
-  visitor.triples("coefficients", terms_,
+  visitor.triples("coefficients", self.terms_,
                   {"", "Terms [i, j, c] of z = sum c x^i y^j, with i + j at most 3; c in m^(1 - i - j).",
                    Presence::required});
+}
+
+void Polynomial::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void Polynomial::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   bool sound = visitor.sound({"origin", "normal", "x_axis", "radius", "coefficients"});
   if (sound && normal_.norm() < 1e-12) {
     visitor.fault("normal", "expected a vector that is not zero, found [0, 0, 0]");
@@ -112,14 +121,10 @@ void Polynomial::describe(FieldVisitor& visitor) {
 void Polynomial::prepare() {
   const Vec3d z = normal_.normalized();
   const Vec3d y = z.cross(xAxis_).normalized();
-  // Others may be reading: what does not change is never something else in between.
-  Eigen::Matrix3d axes;
-  axes << y.cross(z), y, z;
-  axes_ = axes;
-  std::array<double, 10> c{};
+  axes_ << y.cross(z), y, z;
+  c_ = {};
   for (const Term& term : terms_)
-    c[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
-  c_ = c;
+    c_[static_cast<std::size_t>(termIndex(static_cast<int>(term[0]), static_cast<int>(term[1])))] += term[2];
 }
 
 Polynomial::Value Polynomial::at(double x, double y) const {

@@ -20,6 +20,7 @@ class Polynomial final : public Surface {
              std::vector<Term> terms);
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   /// Around the ball in which the wall exists they jump.
   bool steadyDistance() const override { return false; }
   float distance(const Vec3f& p, Vec3f& normal) const override;
@@ -32,6 +33,8 @@ class Polynomial final : public Surface {
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Polynomial>& self);
   struct Value {
     double z, dx, dy, dxx, dxy, dyy;  ///< height of the graph and its derivatives
   };

@@ -15,11 +15,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raised whenever the file, or what a fit gives, changes.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
-/// FNV-1a; `seed` makes several of one.
-std::uint64_t hashOf(std::string_view text, std::uint64_t seed = 0) {
-  std::uint64_t sum = 0xCBF29CE484222325U ^ seed;
+/// FNV-1a.
+std::uint64_t hashOf(std::string_view text) {
+  std::uint64_t sum = 0xCBF29CE484222325U;
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
   return sum;
 }
@@ -56,14 +56,10 @@ std::string slimFitKey(const SlimSource& source) {
     add(key, "bowl",
         {bowl.center.x(), bowl.center.y(), bowl.center.z(), bowl.radius, bowl.thickness, bowl.height});
   } else {
-    const std::optional<std::string> content = contentOf(source.file);
-    if (!content) return {};
-    char text[96];
-    std::snprintf(text, sizeof text, "file %zu %016llx %016llx", content->size(),
-                  static_cast<unsigned long long>(hashOf(*content)),
-                  static_cast<unsigned long long>(hashOf(*content, 0x9E3779B97F4A7C15U)));
-    // The reader goes by it.
-    key = text + (" " + source.file.extension().string());
+    const FileIdentity content = source.content();
+    if (content.bytes == 0) return {};
+    // The reader goes by the name's ending.
+    key = "file " + content.text() + " " + source.file.extension().string();
   }
   add(key, "fit", {static_cast<double>(source.degree), source.tolerance, static_cast<double>(source.nodes)});
   const Transform& place = source.transform;

@@ -41,6 +41,7 @@ SlimFit fitOf(const SlimSource& source, ThreadPool& pool) {
     points = placedBowl(source, kBowlPoints);
   } else {
     ImportedShape shape = importShape(source.file);
+    requireUnchanged(source.file, source.content());
     transformShape(shape, source.transform);
     points = fitPoints(shape, source.nodes);
     fit.notes = std::move(shape.notes);
@@ -67,6 +68,7 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
   auto result = std::make_shared<SlimWallData>();
   if (source.kind == SlimSource::Kind::slimFile) {
     SlimData data = readSlimFile(source.file);
+    requireUnchanged(source.file, source.content());
     transformNodes(data.nodes, source.transform);
     transformNodes(data.hierarchy.merged, source.transform);
     if (std::string note = cutTo(data, source.tolerance, source.nodes); !note.empty())
@@ -83,23 +85,8 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
   return result;
 }
 
-/// Of the file when it was read: a fit of what has changed since is of no use.
-struct FileStamp {
-  std::filesystem::file_time_type time;
-  std::uintmax_t size = 0;
-  bool operator==(const FileStamp&) const = default;
-};
-
-FileStamp stampOf(const SlimSource& source) {
-  std::error_code ignored;
-  if (source.kind == SlimSource::Kind::bowl) return {};
-  return {std::filesystem::last_write_time(source.file, ignored),
-          std::filesystem::file_size(source.file, ignored)};
-}
-
 struct Kept {
   SlimSource source;
-  FileStamp stamp;
   std::shared_ptr<const SlimWallData> data;
 };
 
@@ -114,8 +101,14 @@ const SlimMesh& SlimWallData::drawnMesh() const {
 }
 
 bool SlimSource::operator==(const SlimSource& other) const {
-  return kind == other.kind && file == other.file && bowl == other.bowl && degree == other.degree &&
-         tolerance == other.tolerance && nodes == other.nodes && transform == other.transform;
+  return kind == other.kind && file == other.file && identity == other.identity && bowl == other.bowl &&
+         degree == other.degree && tolerance == other.tolerance && nodes == other.nodes &&
+         transform == other.transform;
+}
+
+FileIdentity SlimSource::content() const {
+  if (kind == Kind::bowl) return {};
+  return identity ? *identity : identityOf(file);
 }
 
 std::optional<double> slimFitError(const SlimSource& source, const SlimModel& model) {
@@ -123,22 +116,24 @@ std::optional<double> slimFitError(const SlimSource& source, const SlimModel& mo
   ThreadPool pool(0);
   if (source.kind == SlimSource::Kind::bowl)
     return measureSlim(model, placedBowl(source, kJudgedBowlPoints).points, pool).mean;
+  if (source.identity && identityOf(source.file) != *source.identity) return std::nullopt;
   ImportedShape shape = importShape(source.file);
   transformShape(shape, source.transform);
   return measureSlim(model, shape, pool).mean;
 }
 
-std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {
+std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& asked) {
   // The only state that outlives a scene: comparisons and restarts read the same scene again and again, and a
   // fit takes seconds. Fits do not depend on when and where they are made, so nobody sees a difference.
   static std::mutex mutex;
   static std::deque<Kept> kept;
-  const FileStamp stamp = stampOf(source);
+  SlimSource source = asked;
+  source.identity = asked.content();
   const std::lock_guard lock(mutex);
   if (!MadeAnew::active())
     for (const Kept& known : kept)
-      if (known.source == source && known.stamp == stamp) return known.data;
-  kept.push_front({source, stamp, prepare(source)});
+      if (known.source == source) return known.data;
+  kept.push_front({source, prepare(source)});
   if (kept.size() > kMostKept) kept.pop_back();
   return kept.front().data;
 }

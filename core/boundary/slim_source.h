@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/file_identity.h"
 #include "core/slim/bowl.h"
 #include "core/slim/slim_fitting.h"
 #include "core/slim/slim_mesh.h"
@@ -21,6 +22,8 @@ struct SlimSource {
 
   Kind kind = Kind::mesh;
   std::filesystem::path file;  ///< of slimFile and mesh
+  /// What is in the file: nothing else is read. Null: what is there at the time.
+  std::optional<FileIdentity> identity{};
   Bowl bowl;
   int degree = 2;        ///< of the fit
   double tolerance = 0;  ///< of the fit (m); 0 with nodes 0: a thousandth of the diagonal. Cuts a file's
@@ -29,6 +32,8 @@ struct SlimSource {
   Transform transform;
 
   bool operator==(const SlimSource& other) const;
+  /// The identity of the file's content that counts.
+  FileIdentity content() const;
 };
 
 /// A surface ready for use, with what is worth saying about it.
@@ -47,10 +52,11 @@ struct SlimWallData {
 };
 
 /// Mean distance (m) of a model from the shape that it was fitted to, at points that the fit has not seen;
-/// null for a file of ours, which no longer has its shape.
+/// null for a file of ours, which no longer has its shape, and for a file that has changed since.
 std::optional<double> slimFitError(const SlimSource& source, const SlimModel& model);
 
-/// Reads, fits and prepares; throws InputError when the file does not allow it.
+/// Reads, fits and prepares; throws InputError when the file does not allow it, or holds something else than
+/// `source` says.
 std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source);
 
 }  // namespace migiwa

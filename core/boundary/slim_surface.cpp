@@ -9,8 +9,6 @@ namespace migiwa {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
-
 /// Passages from one origin: first hits and exits ask for the same ones in turn.
 struct Passages {
   std::shared_ptr<const SlimWallData> data;
@@ -38,57 +36,62 @@ thread_local Passages passages;
 
 }  // namespace
 
-void SlimSurface::describeFluid(FieldVisitor& visitor) {
-  visitor.choice("fluid", fluid_, kFluidNames,
-                 {"", "The side of the wall that holds the fluid.", Presence::required});
-}
-
-void SlimSurface::describeFit(FieldVisitor& visitor) {
-  visitor.integer("degree", source_.degree, Range::closed(1, kLargestSlimDegree),
+template <class Visitor>
+void SlimSurface::describeFit(Visitor& visitor, Visited<Visitor, SlimSource>& source) {
+  visitor.integer("degree", source.degree, Range::closed(1, kLargestSlimDegree),
                   {"1", "Degree of the polynomials."});
-  visitor.number("tolerance", source_.tolerance, Range::closed(0, 1e6),
+  visitor.number("tolerance", source.tolerance, Range::closed(0, 1e6),
                  {"m",
                   "Largest distance of a polynomial to the mesh; 0: a thousandth of its diagonal, or all "
                   "nodes of a file."});
-  visitor.integer("nodes", source_.nodes, Range::closed(0, 5e6),
+  visitor.integer("nodes", source.nodes, Range::closed(0, 5e6),
                   {"1",
                    "Fits about so many nodes instead, or takes at most so many of a file; 0: by the "
                    "tolerance."});
-  if (visitor.sound({"tolerance", "nodes"}) && source_.tolerance > 0 && source_.nodes > 0)
+  if (visitor.sound({"tolerance", "nodes"}) && source.tolerance > 0 && source.nodes > 0)
     visitor.fault("nodes", "expected either tolerance or nodes, found both");
 }
 
-void SlimSurface::describeTransform(FieldVisitor& visitor) {
-  visitor.object("transform", {"", "Where the shape of the file stands in the scene."},
-                 [this](FieldVisitor& fields) { source_.transform.describe(fields); });
+template <class Visitor>
+void SlimSurface::describeBowl(Visitor& visitor, Visited<Visitor, Bowl>& bowl) {
+  visitor.vector("center", bowl.center, {"m", "Centre of the sphere.", Presence::required});
+  visitor.number("radius", bowl.radius, Range::positive(kLargestCoordinate),
+                 {"m", "Of the sphere midway in the wall.", Presence::required});
+  visitor.number("thickness", bowl.thickness, Range::positive(kLargestCoordinate),
+                 {"m", "Of the wall.", Presence::required});
+  visitor.number("height", bowl.height, Range::closed(0, kLargestCoordinate),
+                 {"m", "Of the rim above the centre: 0 is a bowl, more a glass with a round bottom."});
+  if (visitor.sound({"radius", "thickness"}) && bowl.thickness >= bowl.radius)
+    visitor.fault("thickness", "expected less than the radius, found more");
 }
 
-void SlimSurface::describe(FieldVisitor& visitor) {
-  describeFluid(visitor);
-  visitor.file("file", slimFile_,
+/// `bowl`: whether there is one.
+template <class Visitor>
+void SlimSurface::fields(Visitor& visitor, Visited<Visitor, SlimSurface>& self,
+                         Visited<Visitor, bool>& bowl) {
+  describeFluid(visitor, self);
+  visitor.file("file", self.slimFile_,
                {"", "A surface that migiwa slim has written, relative to the scene file."});
-  visitor.file("mesh", meshFile_,
+  visitor.file("mesh", self.meshFile_,
                {"", "Instead: a mesh or points with normals to fit, relative to the scene file."});
-  bool bowl = source_.kind == SlimSource::Kind::bowl;
   visitor.object(
       "bowl",
       {"",
        "Instead: a bowl by formula, the lower half of a sphere with a rounded rim, or a "
        "glass."},
-      [this](FieldVisitor& fields) {
-        fields.vector("center", source_.bowl.center, {"m", "Centre of the sphere.", Presence::required});
-        fields.number("radius", source_.bowl.radius, Range::positive(kLargestCoordinate),
-                      {"m", "Of the sphere midway in the wall.", Presence::required});
-        fields.number("thickness", source_.bowl.thickness, Range::positive(kLargestCoordinate),
-                      {"m", "Of the wall.", Presence::required});
-        fields.number("height", source_.bowl.height, Range::closed(0, kLargestCoordinate),
-                      {"m", "Of the rim above the centre: 0 is a bowl, more a glass with a round bottom."});
-        if (fields.sound({"radius", "thickness"}) && source_.bowl.thickness >= source_.bowl.radius)
-          fields.fault("thickness", "expected less than the radius, found more");
-      },
-      &bowl);
-  describeFit(visitor);
-  describeTransform(visitor);
+      [&](auto& inner) { describeBowl(inner, self.source_.bowl); }, &bowl);
+  describeFit(visitor, self.source_);
+  describeTransform(visitor, self);
+}
+
+void SlimSurface::describe(FieldWriter& visitor) const {
+  const bool bowl = source_.kind == SlimSource::Kind::bowl;
+  fields(visitor, *this, bowl);
+}
+
+void SlimSurface::describe(FieldVisitor& visitor) {
+  bool bowl = source_.kind == SlimSource::Kind::bowl;
+  fields(visitor, *this, bowl);
   if (!visitor.sound({"file", "mesh", "bowl"})) return;
   const int given =
       static_cast<int>(!slimFile_.empty()) + static_cast<int>(!meshFile_.empty()) + static_cast<int>(bowl);
@@ -97,23 +100,32 @@ void SlimSurface::describe(FieldVisitor& visitor) {
                           std::string(given == 0 ? "none" : "more"));
     return;
   }
-  source_.kind = bowl                ? SlimSource::Kind::bowl
-                 : slimFile_.empty() ? SlimSource::Kind::mesh
-                                     : SlimSource::Kind::slimFile;
-  source_.file = bowl ? std::filesystem::path() : slimFile_.empty() ? meshFile_.path : slimFile_.path;
-  prepare(visitor, bowl ? "bowl" : slimFile_.empty() ? "mesh" : "file");
+  if (bowl) {
+    setFile(SlimSource::Kind::bowl, {});
+    prepare(visitor, "bowl");
+  } else if (slimFile_.empty()) {
+    setFile(SlimSource::Kind::mesh, meshFile_);
+    prepare(visitor, "mesh");
+  } else {
+    setFile(SlimSource::Kind::slimFile, slimFile_);
+    prepare(visitor, "file");
+  }
+}
+
+void SlimSurface::setFile(SlimSource::Kind kind, const FileName& file) {
+  source_.kind = kind;
+  source_.file = file.path;
+  source_.identity = file.identity;
 }
 
 void SlimSurface::prepare(FieldVisitor& visitor, std::string_view key) {
-  if (!visitor.sound({"degree", "tolerance", "nodes", "transform"}) || (data_ && source_ == prepared_))
-    return;
+  if (!visitor.sound({"degree", "tolerance", "nodes", "transform"})) return;
   try {
     data_ = prepareSlim(source_);
   } catch (const InputError& error) {
     for (const Fault& fault : error.faults()) visitor.fault(key, fault.message + " (" + fault.place + ")");
     return;
   }
-  prepared_ = source_;
   for (const std::string& note : data_->notes) visitor.warning(key, source_.file.string() + ": " + note);
 }
 

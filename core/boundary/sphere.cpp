@@ -18,12 +18,21 @@ Sphere::Sphere(const Vec3d& center, double radius, Fluid fluid)
   prepare();
 }
 
-void Sphere::describe(FieldVisitor& visitor) {
-  visitor.choice("fluid", fluid_, kFluidNames,
+template <class Visitor>
+void Sphere::fields(Visitor& visitor, Visited<Visitor, Sphere>& self) {
+  visitor.choice("fluid", self.fluid_, kFluidNames,
                  {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("center", centerExact_, {"m", "Centre.", Presence::required});
-  visitor.number("radius", radiusExact_, Range::positive(kLargestCoordinate),
+  visitor.vector("center", self.centerExact_, {"m", "Centre.", Presence::required});
+  visitor.number("radius", self.radiusExact_, Range::positive(kLargestCoordinate),
                  {"m", "Radius.", Presence::required});
+}
+
+void Sphere::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void Sphere::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   prepare();
 }
 

@@ -13,6 +13,7 @@ class Sphere final : public Surface {
   Sphere(const Vec3d& center, double radius, Fluid fluid);
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
@@ -24,6 +25,8 @@ class Sphere final : public Surface {
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Sphere>& self);
   void prepare();
 
   Vec3d centerExact_ = Vec3d::Zero();

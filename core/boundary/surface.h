@@ -47,6 +47,8 @@ class Surface {
 
   /// Visits the fields of the scene file's object, then checks and prepares what follows from them.
   virtual void describe(FieldVisitor& visitor) = 0;
+  /// Visits the same fields, and changes nothing.
+  virtual void describe(FieldWriter& visitor) const = 0;
 
   /// How the wall moves; none: it stands still. What moves is a MovingSurface about this one, which a
   /// Boundary makes for itself, so that surfaces can be shared.

@@ -32,6 +32,7 @@ class Effect {
   virtual ~Effect() = default;
   /// Visits the fields of the scene's object under "effects": its parameters with units, ranges and defaults.
   virtual void describe(FieldVisitor& visitor) = 0;
+  virtual void describe(FieldWriter& visitor) const = 0;
   virtual std::unique_ptr<Effect> clone() const = 0;
   /// The stages that it adds to a step with the parameters as they are.
   virtual EffectStages stages() const = 0;

@@ -122,10 +122,8 @@ constexpr float kCohesion = 3.2F, kArea = 0.4F;
 
 class SurfaceTension final : public Effect {
  public:
-  void describe(FieldVisitor& visitor) override {
-    visitor.number("coefficient", coefficient_, Range::closed(0, 1e6),
-                   {"N/m", "Surface tension of the liquid against air; water has 0.072."});
-  }
+  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
+  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
   std::unique_ptr<Effect> clone() const override { return std::make_unique<SurfaceTension>(*this); }
   EffectStages stages() const override { return {.prediction = coefficient_ > 0}; }
 
@@ -156,6 +154,12 @@ class SurfaceTension final : public Effect {
   }
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, SurfaceTension>& self) {
+    visitor.number("coefficient", self.coefficient_, Range::closed(0, 1e6),
+                   {"N/m", "Surface tension of the liquid against air; water has 0.072."});
+  }
+
   double coefficient_ = 0.072;
 };
 

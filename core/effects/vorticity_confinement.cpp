@@ -154,10 +154,8 @@ void removeNetMotion(const StepState& state, std::vector<Float4>& accelerations)
 
 class VorticityConfinement final : public Effect {
  public:
-  void describe(FieldVisitor& visitor) override {
-    visitor.number("strength", strength_, Range::closed(0, 100),
-                   {"1/s", "Rate at which velocity differences across a support radius are fed."});
-  }
+  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
+  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
   std::unique_ptr<Effect> clone() const override { return std::make_unique<VorticityConfinement>(*this); }
   EffectStages stages() const override { return {.velocity = strength_ > 0}; }
 
@@ -201,6 +199,12 @@ class VorticityConfinement final : public Effect {
   }
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, VorticityConfinement>& self) {
+    visitor.number("strength", self.strength_, Range::closed(0, 100),
+                   {"1/s", "Rate at which velocity differences across a support radius are fed."});
+  }
+
   double strength_ = 2;
 };
 

@@ -7,13 +7,22 @@ namespace migiwa {
 BoxSource::BoxSource(const Vec3d& min, const Vec3d& max, const Rotation& rotation)
     : min_(min), max_(max), rotation_(rotation) {}
 
-void BoxSource::describe(FieldVisitor& visitor) {
-  visitor.vector("min", min_,
+template <class Visitor>
+void BoxSource::fields(Visitor& visitor, Visited<Visitor, BoxSource>& self) {
+  visitor.vector("min", self.min_,
                  {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", max_,
+  visitor.vector("max", self.max_,
                  {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
-                 [this](FieldVisitor& fields) { rotation_.describe(fields); });
+                 [&](auto& rotation) { Rotation::describe(rotation, self.rotation_); });
+}
+
+void BoxSource::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void BoxSource::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   if (visitor.sound({"min", "max"}) && (max_.array() <= min_.array()).any())
     visitor.fault("max", "expected every coordinate to be larger than that of min, found one that is not");
 }

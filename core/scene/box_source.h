@@ -14,11 +14,14 @@ class BoxSource final : public FluidSource {
   BoxSource(const Vec3d& min, const Vec3d& max, const Rotation& rotation = {});
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   double count(double spacing) const override;
   void fill(double spacing, std::vector<Vec3d>& out) const override;
   Bounds bounds() const override;
 
  private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, BoxSource>& self);
   /// Cells along each axis, as real numbers: they may be more than an integer holds.
   Vec3d cells(double spacing) const;
   Vec3d toWorld(const Vec3d& p) const;

@@ -13,13 +13,6 @@ namespace migiwa {
 
 namespace {
 
-// What `describe` needs may change and what a scene holds may not: a writer leaves an object as it finds it,
-// and a reader only ever describes objects that it has just made.
-template <class T>
-T& describable(const std::shared_ptr<const T>& object) {
-  return const_cast<T&>(*object);
-}
-
 /// The place in `names` of the shape that `object` is, found by its type.
 template <class T>
 int shapeOf(const T& object, std::span<const std::string_view> names, std::unique_ptr<T> (*make)(int)) {
@@ -31,95 +24,131 @@ int shapeOf(const T& object, std::span<const std::string_view> names, std::uniqu
   return -1;
 }
 
-/// A list of objects whose "shape" says what they are. Adds to `objects` what a reader finds. `common`, if
-/// given, visits what all shapes share.
+constexpr std::string_view kShapeKey = "shape";
+constexpr FieldDoc kShapeDoc{"", "What it is.", Presence::required};
+
+/// The objects that `makeOne` makes, by the names of their shapes.
 template <class T>
+struct Shapes {
+  std::span<const std::string_view> names;
+  std::unique_ptr<T> (*makeOne)(int);
+};
+
+/// A list of objects whose "shape" says what they are: each is described by its shape, by `more` and, after
+/// the keys that depend on the shape, by `common`. What is read is added to `objects`.
+template <class T, class More, class Common>
 void describeShapes(FieldVisitor& visitor, std::string_view key, const FieldDoc& doc,
-                    std::vector<std::shared_ptr<const T>>& objects, std::span<const std::string_view> names,
-                    std::unique_ptr<T> (*make)(int), const std::function<void(FieldVisitor&, T&)>& describe,
-                    const std::function<void(FieldVisitor&, T&)>& common = {}) {
-  visitor.list(key, objects.size(), doc, [&](FieldVisitor& element, std::size_t at) {
-    int shape = at < objects.size() ? shapeOf(*objects[at], names, make) : -1;
-    const int known = shape;
-    const std::size_t before = objects.size();
-    element.variant("shape", shape, names, {"", "What it is.", Presence::required},
-                    [&](FieldVisitor& fields, int picked) {
-                      if (picked == known) return describe(fields, describable(objects[at]));
-                      std::shared_ptr<T> made = make(picked);
-                      describe(fields, *made);
-                      objects.push_back(std::move(made));
-                    });
-    if (!common) return;
-    if (known >= 0) {
-      common(element, describable(objects[at]));
-    } else if (objects.size() > before) {
-      common(element, describable(objects.back()));
-    }
+                    std::vector<std::shared_ptr<const T>>& objects, const Shapes<T>& shapes, const More& more,
+                    const Common& common) {
+  visitor.list(key, objects.size(), doc, [&](FieldVisitor& element, std::size_t) {
+    int shape = -1;
+    std::shared_ptr<T> made;
+    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](FieldVisitor& fields, int picked) {
+      made = shapes.makeOne(picked);
+      made->describe(fields);
+      more(fields, *made);
+    });
+    if (made == nullptr) return;
+    common(element, *made);
+    objects.push_back(std::move(made));
   });
 }
 
-void describeFluid(FieldVisitor& visitor, Scene& scene) {
-  const bool spacingKnown = visitor.sound({"particle_spacing"});
-  describeShapes<FluidSource>(
-      visitor, "fluid", {"", "Regions that are full of fluid at the start. None at all is valid."},
-      scene.fluid, fluidShapes(), makeFluidSource, [&](FieldVisitor& fields, FluidSource& source) {
-        source.describe(fields);
-        fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
-        fields.boolean("trim", source.trim,
-                       {"", "Leave out particles less than half a spacing inside the fluid side of a wall."});
-        if (spacingKnown && fields.sound({"min", "max", "center", "radius", "file", "transform"}) &&
-            source.count(scene.particleSpacing) < 1)
-          fields.fault("",
-                       "expected a region with room for a particle, found one thinner than half of "
-                       "particle_spacing");
-      });
+/// The same for objects that are written.
+template <class T, class More, class Common>
+void describeShapes(FieldWriter& visitor, std::string_view key, const FieldDoc& doc,
+                    const std::vector<std::shared_ptr<const T>>& objects, const Shapes<T>& shapes,
+                    const More& more, const Common& common) {
+  visitor.list(key, objects.size(), doc, [&](FieldWriter& element, std::size_t at) {
+    const T& object = *objects[at];
+    const int shape = shapeOf(object, shapes.names, shapes.makeOne);
+    if (shape < 0) return;  // not one that a scene can name
+    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](FieldWriter& fields, int) {
+      object.describe(fields);
+      more(fields, object);
+    });
+    common(element, object);
+  });
 }
 
-void describeEmitters(FieldVisitor& visitor, Scene& scene) {
+template <class Visitor>
+void describeFluid(Visitor& visitor, Visited<Visitor, Scene>& scene) {
+  const bool spacingKnown = visitor.sound({"particle_spacing"});
+  const auto more = [&](auto& fields, auto& source) {
+    fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
+    fields.boolean("trim", source.trim,
+                   {"", "Leave out particles less than half a spacing inside the fluid side of a wall."});
+    if (Visitor::kChanges && spacingKnown &&
+        fields.sound({"min", "max", "center", "radius", "file", "transform"}) &&
+        source.count(scene.particleSpacing) < 1)
+      fields.fault("",
+                   "expected a region with room for a particle, found one thinner than half of "
+                   "particle_spacing");
+  };
+  const auto nothing = [](auto&, auto&) {};
+  describeShapes<FluidSource>(visitor, "fluid",
+                              {"", "Regions that are full of fluid at the start. None at all is valid."},
+                              scene.fluid, {fluidShapes(), makeFluidSource}, more, nothing);
+}
+
+template <class Visitor>
+void describeEmitters(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   const double spacing = visitor.sound({"particle_spacing"}) ? scene.particleSpacing : 0;
-  visitor.list("emitters", scene.emitters.size(), {"", "Mouths that give fluid while the simulation runs."},
-               [&](FieldVisitor& fields, std::size_t at) {
-                 if (at >= scene.emitters.size()) scene.emitters.emplace_back();
-                 scene.emitters[at].describe(fields, spacing);
+  auto& emitters = scene.emitters;
+  visitor.list("emitters", emitters.size(), {"", "Mouths that give fluid while the simulation runs."},
+               [&](auto& fields, std::size_t at) {
+                 if constexpr (Visitor::kChanges) {
+                   if (at >= emitters.size()) emitters.emplace_back();
+                   emitters[at].describe(fields, spacing);
+                 } else {
+                   emitters[at].describe(fields);
+                 }
                });
 }
 
-void describeMotion(FieldVisitor& visitor, std::optional<Motion>& motion) {
+template <class Visitor>
+void describeMotion(Visitor& visitor, Visited<Visitor, std::optional<Motion>>& motion) {
   bool present = motion.has_value();
   visitor.object(
       "motion", {"", "How the wall moves; left out, it stands still. What is named here adds up."},
-      [&](FieldVisitor& fields) {
-        if (!motion) motion.emplace();
+      [&](auto& fields) {
+        if constexpr (Visitor::kChanges)
+          if (!motion) motion.emplace();
         motion->describe(fields);
       },
       &present);
 }
 
-void describeBoundary(FieldVisitor& visitor, Scene& scene) {
-  BoundaryParameters& boundary = scene.boundary;
+template <class Visitor>
+void describeGamma(Visitor& visitor, Visited<Visitor, BoundaryParameters>& boundary) {
+  visitor.choice("method", boundary.gammaMethod, gammaMethodNames(),
+                 {"",
+                  "The approximation; auto picks by the shapes of the walls, mean is the paper's Eq. 14, and "
+                  "monte_carlo is for migiwa gamma alone."});
+  visitor.integer("directions", boundary.directions, Range::closed(8, 65536),
+                  {"1", "Directions of the method directions."});
+  visitor.integer("samples", boundary.samples, Range::closed(100, 1e8),
+                  {"1", "Samples of the method monte_carlo."});
+}
+
+template <class Visitor>
+void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
+  auto& boundary = scene.boundary;
   visitor.choice(
       "handling", boundary.handling, handlingNames(),
       {"",
        "How the density is corrected at walls: by gamma, by one of the methods that it is compared "
        "with, or not at all; none only keeps the particles out."});
   visitor.object("gamma", {"", "How gamma, the uncovered part of the kernel, is found."},
-                 [&](FieldVisitor& fields) {
-                   fields.choice("method", boundary.gammaMethod, gammaMethodNames(),
-                                 {"",
-                                  "The approximation; auto picks by the shapes of the walls, mean is the "
-                                  "paper's Eq. 14."});
-                   fields.integer("directions", boundary.directions, Range::closed(8, 65536),
-                                  {"1", "Directions of the method directions."});
-                   fields.integer("samples", boundary.samples, Range::closed(100, 1e8),
-                                  {"1", "Samples of the method monte_carlo."});
-                 });
-  describeShapes<Surface>(
-      visitor, "surfaces", {"", "Walls. The fluid is on the fluid side of all of them."}, scene.surfaces,
-      surfaceShapes(), makeSurface, [](FieldVisitor& fields, Surface& surface) { surface.describe(fields); },
-      [](FieldVisitor& fields, Surface& surface) { describeMotion(fields, surface.motion); });
+                 [&](auto& fields) { describeGamma(fields, boundary); });
+  const auto nothing = [](auto&, auto&) {};
+  describeShapes<Surface>(visitor, "surfaces", {"", "Walls. The fluid is on the fluid side of all of them."},
+                          scene.surfaces, {surfaceShapes(), makeSurface}, nothing,
+                          [](auto& fields, auto& surface) { describeMotion(fields, surface.motion); });
 }
 
-void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
+template <class Visitor>
+void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   visitor.number("time_step", solver.timeStep, Range::positive(1), {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
                   {"1", "Parts that a frame is divided into, at least."});
@@ -160,17 +189,15 @@ void describeSolver(FieldVisitor& visitor, SolverParameters& solver) {
 }
 
 /// Each effect is an object of its own key, and runs when the key is there.
+constexpr FieldDoc kEffectDoc{"", "An effect; {} runs it with its defaults."};
+
 void describeEffects(FieldVisitor& visitor, std::vector<NamedEffect>& effects) {
   const auto names = effectNames();
   for (std::size_t at = 0; at < names.size(); ++at) {
-    const auto known = std::find_if(effects.begin(), effects.end(),
-                                    [&](const NamedEffect& effect) { return effect.name == names[at]; });
-    std::shared_ptr<const Effect> found = known != effects.end() ? known->effect : nullptr;
-    bool present = found != nullptr;
+    bool present = false;
     visitor.object(
-        names[at], {"", "An effect; {} runs it with its defaults."},
+        names[at], kEffectDoc,
         [&](FieldVisitor& fields) {
-          if (found != nullptr) return describable(found).describe(fields);
           std::shared_ptr<Effect> made = makeEffect(static_cast<int>(at));
           made->describe(fields);
           effects.push_back({std::string(names[at]), std::move(made)});
@@ -179,7 +206,18 @@ void describeEffects(FieldVisitor& visitor, std::vector<NamedEffect>& effects) {
   }
 }
 
-void describeCamera(FieldVisitor& visitor, Camera& camera) {
+void describeEffects(FieldWriter& visitor, const std::vector<NamedEffect>& effects) {
+  for (const std::string_view name : effectNames()) {
+    const auto known = std::find_if(effects.begin(), effects.end(),
+                                    [&](const NamedEffect& effect) { return effect.name == name; });
+    const bool present = known != effects.end();
+    visitor.object(
+        name, kEffectDoc, [&](FieldWriter& fields) { known->effect->describe(fields); }, &present);
+  }
+}
+
+template <class Visitor>
+void describeCamera(Visitor& visitor, Visited<Visitor, Camera>& camera) {
   visitor.vector("eye", camera.eye, {"m", "Where the camera is.", Presence::required});
   visitor.vector("target", camera.target, {"m", "What it looks at.", Presence::required});
   visitor.vector("up", camera.up, {"1", "The direction that is up in the picture."});
@@ -195,13 +233,14 @@ void describeCamera(FieldVisitor& visitor, Camera& camera) {
     visitor.fault("up", "expected a direction across the line of sight, found one along it");
 }
 
-void describeView(FieldVisitor& visitor, View& view, bool& cameraPresent) {
+template <class Visitor>
+void describeView(Visitor& visitor, Visited<Visitor, View>& view, bool& cameraPresent) {
   visitor.object(
       "camera", {"", "Left out: one that sees the whole scene."},
-      [&](FieldVisitor& fields) { describeCamera(fields, view.camera); }, &cameraPresent);
+      [&](auto& fields) { describeCamera(fields, view.camera); }, &cameraPresent);
   visitor.object(
       "clip", {"", "Cuts away what lies beyond the plane towards the camera."},
-      [&](FieldVisitor& fields) {
+      [&](auto& fields) {
         fields.choice("axis", view.clip.axis, kAxisNames, {"", "The plane's normal.", Presence::required});
         fields.number("at", view.clip.at, kCoordinateRange,
                       {"m", "Its place on the axis.", Presence::required});
@@ -219,9 +258,9 @@ void describeView(FieldVisitor& visitor, View& view, bool& cameraPresent) {
     visitor.fault("color_range", "expected the smaller value first, found it last");
 }
 
-}  // namespace
-
-void describeScene(FieldVisitor& visitor, Scene& scene) {
+/// Returns whether there is a camera.
+template <class Visitor>
+bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   std::string schema;
   visitor.text("$schema", schema, {"", "For editors; not read."});
   int format = 1;
@@ -237,18 +276,28 @@ void describeScene(FieldVisitor& visitor, Scene& scene) {
   describeFluid(visitor, scene);
   describeEmitters(visitor, scene);
   visitor.object("boundary", {"", "The walls and how the density is corrected at them."},
-                 [&](FieldVisitor& fields) { describeBoundary(fields, scene); });
+                 [&](auto& fields) { describeBoundary(fields, scene); });
   visitor.object("solver", {"", "The constraint solver."},
-                 [&](FieldVisitor& fields) { describeSolver(fields, scene.solver); });
+                 [&](auto& fields) { describeSolver(fields, scene.solver); });
   visitor.object("effects",
                  {"", "What acts on the fluid beside pressure and gravity; only what is named here runs."},
-                 [&](FieldVisitor& fields) { describeEffects(fields, scene.effects); });
+                 [&](auto& fields) { describeEffects(fields, scene.effects); });
   bool cameraPresent = true;
   bool viewPresent = true;
   visitor.object(
       "view", {"", "What pictures show."},
-      [&](FieldVisitor& fields) { describeView(fields, scene.view, cameraPresent); }, &viewPresent);
-  if (!viewPresent || !cameraPresent) scene.view.camera = defaultCamera(scene.bounds(), scene.gravity);
+      [&](auto& fields) { describeView(fields, scene.view, cameraPresent); }, &viewPresent);
+  return viewPresent && cameraPresent;
+}
+
+}  // namespace
+
+void describeScene(FieldVisitor& visitor, Scene& scene) {
+  if (!fieldsOf(visitor, scene)) scene.view.camera = defaultCamera(scene.bounds(), scene.gravity);
+}
+
+void describeScene(FieldWriter& visitor, const Scene& scene) {
+  fieldsOf(visitor, scene);
 }
 
 }  // namespace migiwa

@@ -34,37 +34,45 @@ std::vector<std::array<double, 2>> discLattice(double radius) {
   return best;
 }
 
+constexpr std::string_view kShapeKey = "shape";
+constexpr FieldDoc kShapeDoc{"", "Of its mouth.", Presence::required};
+
 }  // namespace
+
+template <class Visitor>
+void Emitter::fields(Visitor& visitor, Visited<Visitor, Emitter>& self) {
+  visitor.vector("center", self.center, {"m", "Of the mouth.", Presence::required});
+  if (self.shape == MouthShape::disc) {
+    visitor.number("radius", self.radius, Range::positive(kLargestCoordinate),
+                   {"m", "Of the mouth.", Presence::required});
+  } else {
+    visitor.pair("size", self.size, {"m", "Of the mouth, along x_axis and across.", Presence::required});
+    visitor.vector("x_axis", self.xAxis, {"1", "Direction of its first side; left out: any."});
+  }
+  visitor.vector("direction", self.direction,
+                 {"1", "In which the fluid leaves; any length but zero.", Presence::required});
+  visitor.number("speed", self.speed, Range::closed(0, 1e4),
+                 {"m/s", "Of the fluid at the mouth: volume a second over the area of the mouth."});
+  visitor.number("rate", self.rate, Range::closed(0, 1e9),
+                 {"m^3/s", "Instead of speed: volume that leaves in a second."});
+  visitor.number("start", self.start, Range::closed(0, 1e6), {"s", "When it begins."});
+  visitor.number("stop", self.stop, Range::closed(0, 1e6), {"s", "When it ends."});
+  visitor.integer("particles", self.particles, Range::closed(1, 2e9),
+                  {"1", "That it gives at most; then it runs dry."});
+}
+
+void Emitter::describe(FieldWriter& visitor) const {
+  visitor.variant(kShapeKey, static_cast<int>(shape), kMouthShapeNames, kShapeDoc,
+                  [this](FieldWriter& mouth, int) { fields(mouth, *this); });
+}
 
 void Emitter::describe(FieldVisitor& visitor, double spacing) {
   int picked = static_cast<int>(shape);
-  visitor.variant("shape", picked, kMouthShapeNames, {"", "Of its mouth.", Presence::required},
-                  [&](FieldVisitor& fields, int index) {
-                    shape = static_cast<MouthShape>(index);
-                    describeKeys(fields);
-                    check(fields, spacing);
-                  });
-}
-
-void Emitter::describeKeys(FieldVisitor& visitor) {
-  visitor.vector("center", center, {"m", "Of the mouth.", Presence::required});
-  if (shape == MouthShape::disc) {
-    visitor.number("radius", radius, Range::positive(kLargestCoordinate),
-                   {"m", "Of the mouth.", Presence::required});
-  } else {
-    visitor.pair("size", size, {"m", "Of the mouth, along x_axis and across.", Presence::required});
-    visitor.vector("x_axis", xAxis, {"1", "Direction of its first side; left out: any."});
-  }
-  visitor.vector("direction", direction,
-                 {"1", "In which the fluid leaves; any length but zero.", Presence::required});
-  visitor.number("speed", speed, Range::closed(0, 1e4),
-                 {"m/s", "Of the fluid at the mouth: volume a second over the area of the mouth."});
-  visitor.number("rate", rate, Range::closed(0, 1e9),
-                 {"m^3/s", "Instead of speed: volume that leaves in a second."});
-  visitor.number("start", start, Range::closed(0, 1e6), {"s", "When it begins."});
-  visitor.number("stop", stop, Range::closed(0, 1e6), {"s", "When it ends."});
-  visitor.integer("particles", particles, Range::closed(1, 2e9),
-                  {"1", "That it gives at most; then it runs dry."});
+  visitor.variant(kShapeKey, picked, kMouthShapeNames, kShapeDoc, [&](FieldVisitor& mouth, int index) {
+    shape = static_cast<MouthShape>(index);
+    fields(mouth, *this);
+    check(mouth, spacing);
+  });
 }
 
 void Emitter::check(FieldVisitor& visitor, double spacing) {

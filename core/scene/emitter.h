@@ -30,6 +30,7 @@ struct Emitter {
 
   /// Visits the fields of the scene file's object. `spacing` (m) is the particles'; zero: not known.
   void describe(FieldVisitor& visitor, double spacing);
+  void describe(FieldWriter& visitor) const;
 
   double area() const;  ///< (m^2)
   /// Speed of the fluid at the mouth (m/s), whichever of speed and rate is given.
@@ -39,7 +40,8 @@ struct Emitter {
   Bounds bounds() const;
 
  private:
-  void describeKeys(FieldVisitor& visitor);
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Emitter>& self);
   void check(FieldVisitor& visitor, double spacing);
 };
 

@@ -19,6 +19,8 @@ class FluidSource {
   /// Visits the shape's own fields of the scene file's object, then checks and prepares what follows from
   /// them.
   virtual void describe(FieldVisitor& visitor) = 0;
+  /// Visits the same fields, and changes nothing.
+  virtual void describe(FieldWriter& visitor) const = 0;
   /// How many particles fill() makes at most, without making them.
   virtual double count(double spacing) const = 0;
   /// Appends the centres of a cell-centred lattice of the given spacing (m) that lie in the region.

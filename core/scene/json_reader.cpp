@@ -109,13 +109,16 @@ void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& 
 void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc) {
   text(key, value.written, doc);
   value.path.clear();
+  value.identity = {};
   const bool given = object_.contains(std::string(key)) && sound({key});
   if (given && value.empty()) wrong(key, "a file name", "\"\"");
   if (value.empty()) return;
   const Origins& origins = faults_.origins();
   const std::filesystem::path folder = origins.folder(childPointer(pointer_, key));
   value.path = folder / value.written;
-  faults_.noteFile(value.path);
+  const std::vector<std::filesystem::path> files = filesOfShape(value.path);
+  for (const std::filesystem::path& file : files) faults_.noteFile(file);
+  value.identity = identityOf(files);
   // An included scene may lie elsewhere: written again, the name has to hold from the scene itself.
   if (folder != origins.sceneFolder() && std::filesystem::path(value.written).is_relative())
     value.written = value.path.lexically_proximate(origins.sceneFolder()).generic_string();

@@ -14,15 +14,24 @@ MeshSource::MeshSource(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   measure();
 }
 
-void MeshSource::describe(FieldVisitor& visitor) {
-  visitor.file("file", file_,
+template <class Visitor>
+void MeshSource::fields(Visitor& visitor, Visited<Visitor, MeshSource>& self) {
+  visitor.file("file", self.file_,
                {"", "OBJ, PLY, STL, ...: a closed mesh. Relative to the scene file.", Presence::required});
   visitor.object("transform", {"", "Where the shape of the file stands in the scene."},
-                 [this](FieldVisitor& fields) { transform_.describe(fields); });
+                 [&](auto& transform) { Transform::describe(transform, self.transform_); });
+}
+
+void MeshSource::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void MeshSource::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
   if (!visitor.sound({"file", "transform"})) return;
-  if (!mesh_.triangles.empty() && read_.path == file_.path && read_.transform == transform_) return;
   try {
     ImportedShape shape = importShape(file_.path);
+    requireUnchanged(file_.path, file_.identity);
     if (!shape.isMesh() || !shape.closed) {
       visitor.fault("file", "expected a closed mesh, found one that is open or has no triangles (" +
                                 file_.path.string() + ")");
@@ -35,7 +44,6 @@ void MeshSource::describe(FieldVisitor& visitor) {
     for (const Fault& fault : error.faults()) visitor.fault("file", fault.message + " (" + fault.place + ")");
     return;
   }
-  read_ = {file_.path, transform_};
   measure();
 }
 

@@ -15,21 +15,18 @@ class MeshSource final : public FluidSource {
   explicit MeshSource(TriangleMesh mesh);
 
   void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
   double count(double spacing) const override;
   void fill(double spacing, std::vector<Vec3d>& out) const override;
   Bounds bounds() const override { return mesh_.bounds(); }
 
  private:
-  /// What mesh_ was read from.
-  struct Read {
-    std::filesystem::path path;
-    Transform transform;
-  };
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, MeshSource>& self);
   void measure();
 
   FileName file_;
   Transform transform_;
-  Read read_;
   TriangleMesh mesh_;
   double volume_ = 0, area_ = 0;  ///< (m^3, m^2)
 };

@@ -90,8 +90,8 @@ class PointerScanner {
   std::size_t at_ = 0, found_ = 0;
 };
 
-Json normalised(Scene scene) {
-  return JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); });
+Json normalised(const Scene& scene) {
+  return JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); });
 }
 
 /// The JSON Merge Patch that leads from one object to the other. A camera is written as a whole: where the
@@ -168,7 +168,7 @@ std::string startOf(Scene scene) {
   scene.boundary = plain.boundary;
   scene.effects.clear();
   scene.solver = plain.solver;
-  return sceneIdentity(std::move(scene)).dump();
+  return sceneIdentity(scene).dump();
 }
 
 }  // namespace migiwa

@@ -10,8 +10,8 @@
 
 namespace migiwa {
 
-/// Meshes, points and SLIM surfaces that a valid scene names. No other thread may use the scene meanwhile.
-std::vector<std::filesystem::path> filesNamedBy(Scene scene);
+/// Meshes, points and SLIM surfaces that a valid scene names, with the files that these refer to.
+std::vector<std::filesystem::path> filesNamedBy(const Scene& scene);
 
 /// As parseScene() without `named`, which becomes the meshes, points and SLIM surfaces that the text names,
 /// also when it throws for faults in one of them or elsewhere.

@@ -1,9 +1,5 @@
 #include "core/scene/scene_identity.h"
 
-#include <array>
-#include <fstream>
-
-#include "core/base/checksum.h"
 #include "core/base/state_hash.h"
 #include "core/scene/json_writer.h"
 #include "core/scene/scene_reader.h"
@@ -13,14 +9,9 @@ namespace migiwa {
 namespace {
 
 Json fileIdentity(const FileName& name) {
-  std::ifstream in(name.path, std::ios::binary);
-  std::uint64_t sum = kEmptyChecksum, bytes = 0;
-  std::vector<char> piece(std::size_t{1} << 16);
-  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
-    sum = checksum(sum, piece.data(), static_cast<std::size_t>(in.gcount()));
-    bytes += static_cast<std::uint64_t>(in.gcount());
-  }
-  return {{"name", name.written}, {"bytes", bytes}, {"checksum", hexDigits(sum)}};
+  return {{"name", name.written},
+          {"bytes", name.identity.bytes},
+          {"checksum", hexDigits(name.identity.checksum)}};
 }
 
 std::string shown(const Json* value) {
@@ -56,9 +47,8 @@ void compare(const Json* expected, const Json* found, const std::string& pointer
 
 }  // namespace
 
-Json sceneIdentity(Scene scene) {
-  Json identity =
-      JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); }, fileIdentity);
+Json sceneIdentity(const Scene& scene) {
+  Json identity = JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); }, fileIdentity);
   for (const char* key : {"name", "description", "duration", "view"}) identity.erase(key);
   return identity;
 }

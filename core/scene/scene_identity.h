@@ -9,9 +9,9 @@
 
 namespace migiwa {
 
-/// Every key with the value in force; for a file its name and a checksum of its content. No other thread may
-/// use the scene meanwhile.
-Json sceneIdentity(Scene scene);
+/// Every key with the value in force; for a file its name, and the identity of what was in it when the scene
+/// was read.
+Json sceneIdentity(const Scene& scene);
 
 /// One fault for each place where `found` is not what `expected` has.
 std::vector<DocumentFault> identityFaults(const Json& expected, const Json& found);

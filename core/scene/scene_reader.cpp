@@ -67,11 +67,12 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
   return scene;
 }
 
-std::vector<std::filesystem::path> filesNamedBy(Scene scene) {
+std::vector<std::filesystem::path> filesNamedBy(const Scene& scene) {
   std::vector<std::filesystem::path> files;
-  JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); },
+  JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); },
                     [&](const FileName& name) {
-                      files.push_back(name.path);
+                      for (std::filesystem::path& file : filesOfShape(name.path))
+                        files.push_back(std::move(file));
                       return Json(name.written);
                     });
   return files;

@@ -30,5 +30,6 @@ std::vector<std::filesystem::path> filesOfScene(const std::filesystem::path& fil
 
 /// Visits every key of a scene: the one list that reading, writing and documentation share.
 void describeScene(FieldVisitor& visitor, Scene& scene);
+void describeScene(FieldWriter& visitor, const Scene& scene);
 
 }  // namespace migiwa

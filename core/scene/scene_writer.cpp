@@ -5,8 +5,8 @@
 
 namespace migiwa {
 
-std::string writeScene(Scene scene) {
-  return prettyJson(JsonWriter::write([&](FieldVisitor& fields) { describeScene(fields, scene); }));
+std::string writeScene(const Scene& scene) {
+  return prettyJson(JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); }));
 }
 
 }  // namespace migiwa

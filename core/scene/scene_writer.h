@@ -8,7 +8,7 @@
 namespace migiwa {
 
 /// The normalised text: every key with its value in force, defaults and the chosen camera included. Reading
-/// it gives the same scene. No other thread may use the scene meanwhile.
-std::string writeScene(Scene scene);
+/// it gives the same scene.
+std::string writeScene(const Scene& scene);
 
 }  // namespace migiwa

@@ -6,10 +6,19 @@
 
 namespace migiwa {
 
-void SphereSource::describe(FieldVisitor& visitor) {
-  visitor.vector("center", center_, {"m", "Centre of the ball.", Presence::required});
-  visitor.number("radius", radius_, Range::positive(kLargestCoordinate),
+template <class Visitor>
+void SphereSource::fields(Visitor& visitor, Visited<Visitor, SphereSource>& self) {
+  visitor.vector("center", self.center_, {"m", "Centre of the ball.", Presence::required});
+  visitor.number("radius", self.radius_, Range::positive(kLargestCoordinate),
                  {"m", "Its radius.", Presence::required});
+}
+
+void SphereSource::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void SphereSource::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
 }
 
 double SphereSource::count(double spacing) const {

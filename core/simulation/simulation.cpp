@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "core/base/available_memory.h"
 #include "core/base/guard.h"
@@ -18,25 +19,32 @@
 #include "core/simulation/fill.h"
 #include "core/simulation/health.h"
 #include "core/simulation/step_memory.h"
+#include "core/simulation/wall_exchange.h"
 #include "core/solver/hold_energy.h"
 #include "core/solver/pbf_solver.h"
 #include "core/solver/thin_walls.h"
 
 namespace migiwa {
 
+namespace {
+
+Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
+  return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
+                                    scene.file.string() + ":/boundary/surfaces"));
+}
+
+}  // namespace
+
 struct Simulation::State {
   State(Scene theScene, int threads)
       : scene(std::move(theScene)),
         pool(threads),
-        boundary(walls()),
+        boundary(wallsOf(scene, pool)),
         step(pool, boundary),
         emission(scene, boundary) {}
 
-  Boundary walls() {
-    return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
-                                      scene.file.string() + ":/boundary/surfaces"));
-  }
-  void configure();
+  /// Takes settings over wholly, or throws and stays as it is.
+  void configure(const Settings& settings);
   void advanceSubstep(double start, double dt);
   EnergySums emit(double start);
   void partCrowded();
@@ -89,51 +97,70 @@ constexpr long kMostSubsteps = 1000;
 
 }  // namespace
 
-void Simulation::State::configure() {
+/// Whatever may fail is made first, beside what is in force.
+void Simulation::State::configure(const Settings& settings) {
+  requireSteppable(settings.boundary, scene.file);
+  Scene changed = scene;
+  changed.solver = settings.solver;
+  changed.boundary = settings.boundary;
+  changed.effects = settings.effects;
+  const auto supportRadius = static_cast<float>(changed.supportRadius());
+  WallExchange walls(boundary);  // a gamma method refers to the walls where they will be
+  if (step.supportRadius > 0 && supportRadius != step.supportRadius) {
+    walls.put(wallsOf(changed, pool));
+    boundary.moveTo(time, time);
+  }
+  std::vector<const Surface*> thin = migiwa::thinWalls(boundary, supportRadius), barring;
+  if (kGuards) barring = migiwa::barringWalls(boundary, supportRadius);
+  const RestingLattice lattice = restingLattice(changed.solver.kernel, changed.solver.supportRatio);
+  PickedGamma picked;
+  std::string handlingName = "no correction", gammaName;
+  if (!boundary.empty()) {
+    const BoundaryHandling handling = changed.boundary.handling;
+    const bool isGamma = handling == BoundaryHandling::gamma;
+    picked =
+        makeHandling(handling, changed.boundary.gammaMethod,
+                     {boundary, changed.solver.kernel, supportRadius, changed.boundary.directions,
+                      changed.boundary.samples, changed.bounds(), &pool,
+                      changed.file.string() + (isGamma ? ":/boundary/gamma/method" : ":/boundary/handling"),
+                      static_cast<float>(changed.particleSpacing)});
+    if (picked.method) handlingName = isGamma ? "gamma: " + picked.name : picked.name;
+    if (isGamma) gammaName = picked.name;
+  }
+  EffectPipeline changedEffects(changed.effects);
+  const HealthLimits changedLimits = healthLimits(changed);
+
+  // From here on nothing fails. What goes out of force ends with this function, the method before its walls.
+  walls.keep();
+  scene.solver = changed.solver;
+  scene.boundary = changed.boundary;
+  scene.effects.swap(changed.effects);
+  std::swap(gamma, picked);
+  std::swap(effects, changedEffects);
+  statistics.gammaPicked.swap(gammaName);
+  statistics.gammaReason.swap(gamma.reason);
+  info.handling.swap(handlingName);
+  limits = changedLimits;
   step.parameters = scene.solver;
   step.gravity = scene.gravity.cast<float>();
   step.spacing = static_cast<float>(scene.particleSpacing);
-  if (const auto supportRadius = static_cast<float>(scene.supportRadius());
-      supportRadius != step.supportRadius) {
-    if (step.supportRadius > 0) {
-      boundary = walls();
-      boundary.moveTo(time, time);
-    }
-    step.supportRadius = supportRadius;
-  }
-  step.thinWalls = thinWalls(boundary, step.supportRadius);
-  if (kGuards) step.barringWalls = barringWalls(boundary, step.supportRadius);
-  step.lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
-  gamma = {};
-  info.handling = "no correction";
-  statistics.gammaPicked.clear();
-  if (!boundary.empty()) {
-    const BoundaryHandling handling = scene.boundary.handling;
-    const bool isGamma = handling == BoundaryHandling::gamma;
-    gamma = makeHandling(
-        handling, scene.boundary.gammaMethod,
-        {boundary, scene.solver.kernel, step.supportRadius, scene.boundary.directions, scene.boundary.samples,
-         scene.bounds(), &pool,
-         scene.file.string() + (isGamma ? ":/boundary/gamma/method" : ":/boundary/handling"), step.spacing});
-    if (gamma.method) info.handling = isGamma ? "gamma: " + gamma.name : gamma.name;
-    if (isGamma) statistics.gammaPicked = gamma.name;
-    statistics.gammaReason = gamma.reason;
-  }
+  step.supportRadius = supportRadius;
+  step.thinWalls.swap(thin);
+  step.barringWalls.swap(barring);
+  step.lattice = lattice;
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();
   step.wallSlot.clear();
   for (Float4& position : step.particles.position) position.w = 0;  // walls may have other grids now
-  effects = EffectPipeline(scene.effects);
   info.spacing = step.spacing;
   info.supportRadius = step.supportRadius;
-  limits = healthLimits(scene);
 }
 
 Simulation::Simulation(Scene scene, int threads)
     : state_(std::make_unique<State>(std::move(scene), threads)) {
   State& state = *state_;
   fillScene(state.scene, state.boundary, state.step.particles);
-  state.configure();
+  state.configure(settings());
   state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
   // The reader has asked before there were grids of the walls.
   requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
@@ -351,10 +378,7 @@ Settings Simulation::settings() const {
 }
 
 void Simulation::apply(const Settings& settings) {
-  state_->scene.solver = settings.solver;
-  state_->scene.boundary = settings.boundary;
-  state_->scene.effects = settings.effects;
-  state_->configure();
+  state_->configure(settings);
 }
 
 const Scene& Simulation::scene() const {

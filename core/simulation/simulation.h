@@ -7,18 +7,12 @@
 #include "core/base/parallel.h"
 #include "core/scene/scene.h"
 #include "core/simulation/frame_view.h"
+#include "core/simulation/settings.h"
 #include "core/simulation/statistics.h"
 
 namespace migiwa {
 
 class StateVisitor;
-
-/// What may change between two steps of a running simulation.
-struct Settings {
-  SolverParameters solver;
-  BoundaryParameters boundary;
-  std::vector<NamedEffect> effects;
-};
 
 class Simulation {
  public:
@@ -37,7 +31,8 @@ class Simulation {
 
   Settings settings() const;
   /// Takes effect with the next frame. Changing the kernel or the support ratio keeps positions and
-  /// velocities.
+  /// velocities. Throws InputError where walls cannot be handled so, or memory is short; everything is then
+  /// as if nothing had been asked.
   void apply(const Settings& settings);
 
   const Scene& scene() const;

@@ -79,7 +79,6 @@ class SlimModel {
     std::uint32_t right;       ///< second child; the first one follows; 0: a leaf
   };
 
-  void sortNodes();
   void buildCells();
   std::uint32_t buildTree(std::uint32_t begin, std::uint32_t end);
   void buildDistances(ThreadPool& pool);

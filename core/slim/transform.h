@@ -15,13 +15,14 @@ struct Transform {
     return scale == other.scale && rotate.axis == other.rotate.axis &&
            rotate.degrees == other.rotate.degrees && translate == other.translate;
   }
-  void describe(FieldVisitor& visitor) {
-    visitor.number("scale", scale, Range::positive(1e6),
+  template <class Visitor>
+  static void describe(Visitor& visitor, Visited<Visitor, Transform>& self) {
+    visitor.number("scale", self.scale, Range::positive(1e6),
                    {"1", "Factor on all lengths of the file: metres per its unit."});
     visitor.object("rotate",
                    {"", "Turns it about the origin; a file whose z axis is up needs [1, 0, 0] and -90."},
-                   [this](FieldVisitor& fields) { rotate.describe(fields); });
-    visitor.vector("translate", translate, {"m", "Moves it, at last."});
+                   [&](auto& fields) { Rotation::describe(fields, self.rotate); });
+    visitor.vector("translate", self.translate, {"m", "Moves it, at last."});
   }
   Vec3f point(const Vec3f& p) const {
     return (rotate.matrix() * (scale * p.cast<double>()) + translate).cast<float>();

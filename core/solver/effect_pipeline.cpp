@@ -66,10 +66,4 @@ double EffectPipeline::longestStep(const StepState& state) const {
   return longest;
 }
 
-std::size_t EffectPipeline::bytes() const {
-  std::size_t bytes = 0;
-  for (const EffectBuffer& buffer : buffers_) bytes += buffer.capacity() * sizeof(Float4);
-  return bytes;
-}
-
 }  // namespace migiwa

@@ -28,9 +28,6 @@ class EffectPipeline {
   /// The longest step (s) over which all of them are stable.
   double longestStep(const StepState& state) const;
 
-  /// Memory of the effects' own (bytes).
-  std::size_t bytes() const;
-
  private:
   std::vector<NamedEffect> prediction_, iteration_, velocity_;
   std::vector<EffectBuffer> buffers_;

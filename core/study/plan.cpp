@@ -72,11 +72,15 @@ std::vector<Override> StudyPlan::overrides(std::size_t run) const {
   return result;
 }
 
-std::string runFingerprint(const StudyPlan& plan, std::size_t run) {
-  Json identity = sceneIdentity(readScene(plan.scene, plan.overrides(run)));
-  identity["until"] = plan.until;
+std::string runFingerprint(const Scene& scene, double until) {
+  Json identity = sceneIdentity(scene);
+  identity["until"] = until;
   const std::string text = identity.dump();
   return hexDigits(checksum(kEmptyChecksum, text.data(), text.size()));
+}
+
+std::string runFingerprint(const StudyPlan& plan, std::size_t run) {
+  return runFingerprint(readScene(plan.scene, plan.overrides(run)), plan.until);
 }
 
 }  // namespace migiwa

@@ -41,7 +41,9 @@ struct StudyPlan {
 };
 
 /// Tells the runs of one study from those of any other: a checksum of every value in force, of the content of
-/// the files that the scene names, and of `until`. Throws InputError when the scene cannot be read.
+/// the files that the scene names as it was when the scene was read, and of `until` (s).
+std::string runFingerprint(const Scene& scene, double until);
+/// That of a run as its scene and files are now. Throws InputError when the scene cannot be read.
 std::string runFingerprint(const StudyPlan& plan, std::size_t run);
 
 }  // namespace migiwa

@@ -63,10 +63,10 @@ Measure wallError(const Scene& scene) {
 
 RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
                           const std::function<void(double)>& eachFrame) {
-  RunRecord record;
-  record.fingerprint = runFingerprint(plan, run);
   double preparation = 0;
   const std::unique_ptr<Simulation> made = prepared(plan, run, threads, preparation);
+  RunRecord record;
+  record.fingerprint = runFingerprint(made->scene(), plan.until);
   // Fits and grids that are made anew take memory for a while that a start with kept ones does not.
   resetPeakMemory();
   Simulation& simulation = *made;
@@ -127,7 +127,12 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
 void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
                const std::function<void(double)>& eachFrame, RunRecord& record) {
   const std::vector<Override> overrides = plan.overrides(run);
-  Simulation simulation(readScene(plan.scene, overrides), threads);
+  const Scene scene = readScene(plan.scene, overrides);
+  if (runFingerprint(scene, plan.until) != record.fingerprint)
+    throw InputError(plan.scene.string(), "expected the scene and the files of run " + std::to_string(run) +
+                                              " as they were when it began, found them changed; take "
+                                              "another --out");
+  Simulation simulation(scene, threads);
   const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
     eachFrame(simulation.time());
     return true;

@@ -103,6 +103,7 @@ class Spoiler final : public Effect {
   Spoiler(Where where, std::uint32_t id, int step)
       : where_(where), id_(id), left_(std::make_shared<int>(step)) {}
   void describe(FieldVisitor&) override {}
+  void describe(FieldWriter&) const override {}
   std::unique_ptr<Effect> clone() const override { return std::make_unique<Spoiler>(*this); }
   EffectStages stages() const override {
     return {.prediction = where_ == Where::prediction,

@@ -13,6 +13,7 @@ class PointSource final : public FluidSource {
  public:
   PointSource(const Vec3d& point, std::size_t particles) : point_(point), particles_(particles) {}
   void describe(FieldVisitor&) override {}
+  void describe(FieldWriter&) const override {}
   double count(double) const override { return static_cast<double>(particles_); }
   void fill(double, std::vector<Vec3d>& out) const override { out.assign(particles_, point_); }
   Bounds bounds() const override {

@@ -17,6 +17,7 @@
 #include "core/boundary/sphere.h"
 #include "core/io/report.h"
 #include "core/simulation/run.h"
+#include "tests/support/same_stamp.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
@@ -295,6 +296,27 @@ TEST_F(SaveFile, AMeshFileWithAnotherContentIsAnotherScene) {
   writeCube(0.6);
   EXPECT_NE(faultsFor(scene()).find("run.save:/scene/fluid/0/file/checksum: expected "), std::string::npos)
       << faultsFor(scene());
+}
+
+TEST_F(SaveFile, AMeshThatIsEditedWhileTheRunGoesOnIsAnotherScene) {
+  const auto corner = [](const std::string& height) {
+    return "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nv 0 0 " + height + "\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  };
+  const auto scene = [&] {
+    return parseScene(R"({ "format": 1, "particle_spacing": 0.1,
+                           "fluid": [ { "shape": "mesh", "file": "corner.obj" } ] })",
+                      folder_ / "scene.json");
+  };
+  std::ofstream(folder_ / "corner.obj") << corner("0.50");
+  Simulation simulation(scene(), 1);
+  simulation.advanceFrame();
+  rewriteUnseen(folder_ / "corner.obj", corner("0.55"));
+  SettledSampler sampler;
+  writeSave(file_, simulation, sampler, {});
+  EXPECT_NE(faultsFor(scene()).find("run.save:/scene/fluid/0/file/checksum: expected "), std::string::npos)
+      << faultsFor(scene());
+  rewriteUnseen(folder_ / "corner.obj", corner("0.50"));
+  EXPECT_EQ(faultsFor(scene()), "") << "the mesh that the run has";
 }
 
 TEST_F(SaveFile, DamageIsFoundWhereverItIs) {

@@ -8,6 +8,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/render/test_scene.h"
+#include "tests/support/same_stamp.h"
 
 namespace migiwa {
 namespace {
@@ -33,7 +34,7 @@ void writeByRename(const fs::path& file, const std::string& text) {
   fs::rename(file.string() + "~", file);
 }
 
-class SceneWatchTest : public testing::Test {
+class SceneWatchTest : public ::testing::Test {
  protected:
   ~SceneWatchTest() override { fs::remove_all(folder_); }
   const fs::path folder_ = freshFolder("watch");
@@ -76,6 +77,16 @@ TEST_F(SceneWatchTest, ATouchIsNoChange) {
   EXPECT_FALSE(watch.poll());
 }
 
+TEST_F(SceneWatchTest, SeesWhatNeitherSizeNorTimeOfWritingTells) {
+  writeInPlace(file_, "one");
+  fs::last_write_time(file_, fs::last_write_time(file_) - std::chrono::hours(1));
+  SceneWatch watch({file_});
+  EXPECT_FALSE(watch.poll());
+  testing::rewriteUnseen(file_, "two");
+  EXPECT_FALSE(watch.poll());
+  EXPECT_TRUE(watch.poll());
+}
+
 TEST_F(SceneWatchTest, AFileThatStaysAwayIsAChange) {
   writeInPlace(file_, "one");
   SceneWatch watch({file_});
@@ -84,7 +95,7 @@ TEST_F(SceneWatchTest, AFileThatStaysAwayIsAChange) {
   EXPECT_TRUE(watch.poll());
 }
 
-class SceneSessionTest : public testing::Test {
+class SceneSessionTest : public ::testing::Test {
  protected:
   SceneSessionTest() {
     writeInPlace(file_, sceneText(0.02, 0.5));

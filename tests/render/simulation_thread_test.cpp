@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/boundary/sphere.h"
 #include "core/io/save_file.h"
+#include "core/scene/scene_writer.h"
 #include "tests/render/test_scene.h"
 #include "tests/support/test_effects.h"
 
@@ -309,6 +311,102 @@ TEST_F(SavedStateTest, FaultsLeaveTheSimulationAsItIs) {
   while (simulation_.status().stateNote != "Not saved:")
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(simulation_.status().stateFaults.size(), 1U);
+}
+
+/// A tank in a sphere too large for a grid, which the method "baked" needs.
+class RefusedSettingsTest : public ::testing::Test {
+ protected:
+  static Scene vastScene() {
+    Scene scene = smallScene();
+    scene.surfaces.push_back(std::make_shared<Sphere>(Vec3d::Zero(), 1e4, Sphere::Fluid::inside));
+    return scene;
+  }
+  static Settings bakedOf(Settings settings) {
+    const auto names = gammaMethodNames();
+    settings.boundary.gammaMethod = static_cast<int>(std::ranges::find(names, "baked") - names.begin());
+    settings.solver.maxIterations = 3;
+    return settings;
+  }
+  Settings good() const { return {scene_.solver, scene_.boundary, scene_.effects}; }
+  bool refused() {
+    return waitFor(simulation_, frame_, [&] { return !simulation_.status().settingsFaults.empty(); });
+  }
+  std::uint64_t hashAfter(int frames) const {
+    Simulation reference(scene_, 1);
+    for (int k = 0; k < frames; ++k) reference.advanceFrame();
+    return reference.stateHash();
+  }
+  /// Of a frame: a reset applies the settings in force, as if they were others.
+  std::uint64_t hashAfterReset() const {
+    Simulation reference(scene_, 1);
+    reference.apply(good());
+    reference.advanceFrame();
+    return reference.stateHash();
+  }
+  bool at(double time) {
+    return waitFor(simulation_, frame_, [&] { return std::abs(frame_.info.time - time) < 1e-9; });
+  }
+
+  const Scene scene_ = vastScene();
+  SimulationThread simulation_{scene_, 1, Pace::unlimited};
+  FrameSnapshot frame_;
+};
+
+TEST_F(RefusedSettingsTest, ThoseOfBeforeStayAndTheRunGoesOn) {
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  EXPECT_FALSE(simulation_.takeRefusal());
+  simulation_.apply(bakedOf(good()));
+  ASSERT_TRUE(refused());
+  const RunStatus status = simulation_.status();
+  EXPECT_NE(status.settingsFaults[0].find(":/boundary/gamma/method: expected "), std::string::npos)
+      << status.settingsFaults[0];
+  EXPECT_FALSE(status.stopped);
+  const std::optional<Settings> inForce = simulation_.takeRefusal();
+  ASSERT_TRUE(inForce);
+  EXPECT_EQ(inForce->boundary.gammaMethod, scene_.boundary.gammaMethod);
+  EXPECT_EQ(inForce->solver.maxIterations, scene_.solver.maxIterations);
+  EXPECT_FALSE(simulation_.takeRefusal()) << "told once";
+  simulation_.step();
+  ASSERT_TRUE(at(0.01));
+  EXPECT_EQ(frame_.info.stateHash, hashAfter(2));
+
+  simulation_.apply(good());
+  ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return simulation_.status().settingsFaults.empty(); }));
+}
+
+TEST_F(RefusedSettingsTest, AResetWorks) {
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  simulation_.apply(bakedOf(good()));
+  ASSERT_TRUE(refused());
+  simulation_.reset();
+  ASSERT_TRUE(at(0));
+  EXPECT_FALSE(simulation_.status().stopped) << simulation_.status().trouble;
+  EXPECT_TRUE(simulation_.status().settingsFaults.empty());
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  EXPECT_EQ(frame_.info.stateHash, hashAfterReset());
+
+  // Both at once.
+  simulation_.apply(bakedOf(good()));
+  simulation_.reset();
+  ASSERT_TRUE(at(0));
+  EXPECT_FALSE(simulation_.status().stopped);
+  simulation_.step();
+  ASSERT_TRUE(at(0.005));
+  EXPECT_EQ(frame_.info.stateHash, hashAfterReset());
+}
+
+TEST_F(SimulationThreadTest, ManyMayWriteTheSceneOutWhileItPlays) {
+  simulation_.play();
+  const std::string text = writeScene(scene_);
+  std::vector<std::thread> writers;
+  for (int k = 0; k < 3; ++k)
+    writers.emplace_back([&] {
+      for (int time = 0; time < 50; ++time) EXPECT_EQ(writeScene(simulation_.scene()), text);
+    });
+  for (std::thread& writer : writers) writer.join();
 }
 
 TEST_F(SimulationThreadTest, WishesFromAnotherThreadWhileItPlays) {

@@ -108,6 +108,40 @@ TEST_F(CommandLine, WhatCheckPrintsRunsToTheSameHash) {
   EXPECT_NE(found, hash({"simulate", kScenes + "corner_drop.json", "--set", "/particle_spacing=0.1"}));
 }
 
+TEST_F(CommandLine, AReferenceForGammaIsForThatCommandAlone) {
+  const std::string scene = kScenes + "corner_drop.json", set = "/boundary/gamma/method=monte_carlo";
+  const std::vector<std::vector<std::string>> refused{
+      {"simulate", scene, "--until", "0.01"},
+      {"render", scene, "--out", "pictures"},
+      {"view", scene},
+      {"study", scene, "--vary", "/solver/max_iterations=1,2", "--until", "0.01", "--out", "study"}};
+  for (std::vector<std::string> words : refused) {
+    words.insert(words.end(), {"--set", set});
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 2) << words[0] << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find(scene + ":/boundary/gamma/method: expected a method that is quick enough"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("--set /boundary/gamma/method=auto"), std::string::npos) << "the remedy";
+    EXPECT_TRUE(folderIsEmpty()) << words[0];
+  }
+  const Outcome varied = run({"study", scene, "--vary", "/boundary/gamma/method=auto,monte_carlo", "--until",
+                              "0.01", "--out", "study"});
+  EXPECT_EQ(varied.code, 2) << varied.err;
+  EXPECT_TRUE(folderIsEmpty()) << "refused before the first run";
+
+  EXPECT_EQ(run({"check", scene, "--set", set}).code, 0);
+  std::ofstream(folder_ / "points.csv") << "x,y,z\n0.02,0.02,0.02\n";
+  const Outcome gamma = run({"gamma", scene, "--set", set, "--set", "/boundary/gamma/samples=1000",
+                             "--points", "points.csv", "--out", "gamma.csv"});
+  EXPECT_EQ(gamma.code, 0) << gamma.err;
+  // Nothing asks for gamma: the name stays valid.
+  EXPECT_EQ(
+      run({"simulate", scene, "--until", "0.01", "--quiet", "--set", set, "--set", "/boundary/handling=none"})
+          .code,
+      0);
+}
+
 TEST_F(CommandLine, CheckListsTheFaultsOfAllFiles) {
   const Outcome outcome = run({"check", kBad + "broken_nan.json", kScenes + "dam_break.json", "missing.json",
                                kBad + "wrong_types.json"});

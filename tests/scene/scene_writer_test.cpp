@@ -2,9 +2,12 @@
 #include "core/scene/scene_writer.h"
 
 #include <filesystem>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
+#include "core/scene/scene_files.h"
+#include "core/scene/scene_identity.h"
 #include "core/scene/scene_reader.h"
 
 namespace migiwa {
@@ -18,6 +21,17 @@ void expectRoundTrip(const Scene& scene) {
   EXPECT_EQ(again.surfaces.size(), scene.surfaces.size());
   EXPECT_EQ(again.effects.size(), scene.effects.size());
 }
+
+// Scenes are shared between threads: whoever writes one out only reads it.
+template <class T>
+concept WritableAsConst = requires(const T& described, FieldWriter& writer) {
+  described.describe(writer);
+};
+static_assert(WritableAsConst<Surface> && WritableAsConst<FluidSource> && WritableAsConst<Effect> &&
+              WritableAsConst<Motion> && WritableAsConst<Emitter>);
+static_assert(std::is_same_v<decltype(&writeScene), std::string (*)(const Scene&)>);
+static_assert(std::is_same_v<decltype(&sceneIdentity), Json (*)(const Scene&)>);
+static_assert(std::is_same_v<decltype(&filesNamedBy), std::vector<std::filesystem::path> (*)(const Scene&)>);
 
 TEST(SceneWriter, ShippedScenesComeBackTheSame) {
   for (const auto& entry : std::filesystem::directory_iterator(MIGIWA_SOURCE_DIR "/scenes"))

@@ -243,6 +243,7 @@ class CountedBlock final : public Surface {
   CountedBlock(const Vec3d& min, const Vec3d& max) : box_(min, max, Box::Fluid::outside) {}
 
   void describe(FieldVisitor&) override {}
+  void describe(FieldWriter&) const override {}
   float distance(const Vec3f& p, Vec3f& normal) const override { return box_.distance(p, normal); }
   bool project(Vec3f& p, float margin) const override { return box_.project(p, margin); }
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {

@@ -33,7 +33,6 @@ constexpr Room kRooms[] = {
     {"core/scene", 3},
     {"core/simulation", 4},
     {"core/io", 5},
-    {"core/surface", 5},
     {"core/study", 6},
     {"app/platform", 7},
     {"app/render", 8},
@@ -310,9 +309,13 @@ Violations checkHabits(const std::vector<SourceFile>& files) {
     if (lines.size() > kMostLines)
       violations.push_back(file.path + ": " + std::to_string(lines.size()) + " lines, more than " +
                            std::to_string(kMostLines));
-    for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t i = 0; i < lines.size(); ++i) {
       if (std::regex_search(lines[i], unfinished))
         violations.push_back(at(file, i + 1) + ": a note about unfinished work: " + lines[i]);
+      if (file.path.starts_with("core/") && lines[i].find("const_cast") != std::string::npos)
+        violations.push_back(at(file, i + 1) +
+                             ": a const_cast: what is const is shared, and others may be reading it");
+    }
     if (!file.path.ends_with(".h")) continue;
     if (lines.empty() || !lines[0].starts_with("//"))
       violations.push_back(file.path + ": a header opens with a comment that says what it is for");

@@ -110,5 +110,11 @@ TEST(Habits, NoFileIsTooLongOrUnfinished) {
   expect(checkHabits({file("cmake/a.cmake", "one\n# " + word + ": later\n")}), {"cmake/a.cmake:2"});
 }
 
+TEST(Habits, WhatIsConstStaysSo) {
+  const std::string cast = "auto& a = const_cast<A&>(b);\n";
+  expect(checkHabits({file("core/scene/a.cpp", "\n" + cast)}), {"core/scene/a.cpp:2: a const_cast"});
+  expectNone(checkHabits({file("tests/scene/a.cpp", cast)}));
+}
+
 }  // namespace
 }  // namespace migiwa::structure

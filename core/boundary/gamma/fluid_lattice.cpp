@@ -149,12 +149,12 @@ FluidLattice::FluidLattice(const Boundary& boundary, const Vec3f& origin, float 
   pool.run(cut.size(), [&](std::size_t k) { fill(boundary, firstOf(cut[k]), values_[k]); });
 }
 
-std::int32_t& FluidLattice::at(const BlockPlace& place) {
+std::size_t FluidLattice::indexOf(const BlockPlace& place) const {
   std::size_t index = 0;
   for (std::size_t axis = 3; axis-- > 0;)
     index =
         index * static_cast<std::size_t>(size_[axis]) + static_cast<std::size_t>(place[axis] - low_[axis]);
-  return blocks_[index];
+  return index;
 }
 
 void FluidLattice::fill(const Boundary& boundary, const Vec3f& first, Values& values) const {

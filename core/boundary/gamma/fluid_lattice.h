@@ -43,8 +43,9 @@ class FluidLattice {
   static constexpr std::int32_t kFluid = -1, kSolid = -2, kUnknown = -3, kWanted = -4;
   using Values = std::array<float, kValues>;
 
-  std::int32_t& at(const BlockPlace& place);
-  std::int32_t at(const BlockPlace& place) const { return const_cast<FluidLattice*>(this)->at(place); }
+  std::size_t indexOf(const BlockPlace& place) const;
+  std::int32_t& at(const BlockPlace& place) { return blocks_[indexOf(place)]; }
+  std::int32_t at(const BlockPlace& place) const { return blocks_[indexOf(place)]; }
   void fill(const Boundary& boundary, const Vec3f& first, Values& values) const;
 
   float spacing_;

@@ -19,11 +19,17 @@ constexpr std::array kMethods{
     Entry{"baked", makeBakedGamma},     Entry{"mean", makeMeanGamma},
     Entry{"nearest", makeNearestGamma}, Entry{"monte_carlo", makeMonteCarloGamma},
 };
+/// Those behind these are too slow for a step.
+constexpr std::size_t kStepped = kMethods.size() - 1;
 
 }  // namespace
 
 std::span<const std::string_view> gammaMethodNames() {
   return registryNames<kMethods>();
+}
+
+std::span<const std::string_view> steppedGammaMethodNames() {
+  return gammaMethodNames().first(kStepped);
 }
 
 PickedGamma makeGammaMethod(int index, const GammaContext& context) {

@@ -17,68 +17,73 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Writes all fields one after another, numbers with every bit.
-class TextVisitor final : public FieldVisitor {
+/// Writes all fields one after another, numbers with every bit, and files by their content.
+class TextVisitor final : public FieldWriter {
  public:
   const std::string& written() const { return written_; }
 
-  void number(std::string_view key, double& value, const Range&, const FieldDoc&) override {
+  void number(std::string_view key, const double& value, const Range&, const FieldDoc&) override {
     add(key);
     add(value);
   }
-  void integer(std::string_view key, int& value, const Range&, const FieldDoc&) override {
+  void integer(std::string_view key, const int& value, const Range&, const FieldDoc&) override {
     add(key);
     add(static_cast<double>(value));
   }
-  void boolean(std::string_view key, bool& value, const FieldDoc&) override {
+  void boolean(std::string_view key, const bool& value, const FieldDoc&) override {
     add(key);
     add(value ? 1.0 : 0.0);
   }
-  void text(std::string_view key, std::string& value, const FieldDoc&) override {
+  void text(std::string_view key, const std::string& value, const FieldDoc&) override {
     add(key);
     add(value);
   }
-  void vector(std::string_view key, Vec3d& value, const FieldDoc&) override {
+  void file(std::string_view key, const FileName& value, const FieldDoc&) override {
+    add(key);
+    if (value.empty()) return;
+    add(value.identity.text());
+    add(value.path.extension().string());  // the reader goes by it
+  }
+  void vector(std::string_view key, const Vec3d& value, const FieldDoc&) override {
     add(key);
     for (const double coordinate : value) add(coordinate);
   }
-  void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc&, bool*) override {
+  void pair(std::string_view key, const std::array<double, 2>& value, const FieldDoc&, const bool*) override {
     add(key);
     for (const double end : value) add(end);
   }
-  void triples(std::string_view key, std::vector<std::array<double, 3>>& values, const FieldDoc&) override {
+  void triples(std::string_view key, const std::vector<std::array<double, 3>>& values,
+               const FieldDoc&) override {
     add(key);
     for (const auto& triple : values)
       for (const double value : triple) add(value);
   }
-  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+  void choice(std::string_view key, const int& index, std::span<const std::string_view> names,
               const FieldDoc&) override {
     add(key);
     add(names[static_cast<std::size_t>(index)]);
   }
-  void object(std::string_view key, const FieldDoc&, const Fields& fields, bool*) override {
+  void object(std::string_view key, const FieldDoc&, const Fields& fields, const bool*) override {
     add(key);
     fields(*this);
   }
-  void list(std::string_view key, std::size_t size, const FieldDoc&,
-            const std::function<void(FieldVisitor&, std::size_t)>& element) override {
+  void list(std::string_view key, std::size_t size, const FieldDoc&, const Element& element) override {
     add(key);
     for (std::size_t at = 0; at < size; ++at) element(*this, at);
   }
-  void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc&,
-               const std::function<void(FieldVisitor&, int)>& fields) override {
+  void variant(std::string_view key, const int& index, std::span<const std::string_view> names,
+               const FieldDoc&, const Variant& fields) override {
     add(key);
     add(names[static_cast<std::size_t>(index)]);
     fields(*this, index);
   }
-  void fault(std::string_view, std::string_view) override {}
   void add(std::string_view word) { (written_ += word) += ' '; }
   void add(double value) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%a ", value);
     written_ += digits;
   }
-  using FieldVisitor::choice;
+  using FieldWriter::choice;
 
  private:
   std::string written_;
@@ -125,8 +130,7 @@ std::string describeWalls(const Boundary& boundary) {
   for (const auto& surface : boundary.surfaces()) {
     const Surface& one = *surface;
     visitor.add(typeid(one).name());
-    // As a writer of scenes does: it leaves the surface as it finds it.
-    const_cast<Surface&>(*surface).describe(visitor);
+    one.describe(visitor);
   }
   return visitor.written();
 }

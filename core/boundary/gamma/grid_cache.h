@@ -10,7 +10,7 @@
 
 namespace migiwa {
 
-/// Every field of every surface as text: what tells one set of walls from another.
+/// Every field of every surface as text, files by their content: what tells one set of walls from another.
 std::string describeWalls(const Boundary& boundary);
 
 /// The file for a key, in a folder (cacheFolder()).

@@ -18,12 +18,10 @@ class Cube {
       : reach_(reach), side_(2 * reach + 1), values_(cubeIndex(0, 0, side_, side_, side_), 0.0) {}
 
   int reach() const { return reach_; }
-  double& at(int x, int y, int z) {
-    return values_[cubeIndex(x + reach_, y + reach_, z + reach_, side_, side_)];
-  }
+  double& at(int x, int y, int z) { return values_[indexOf(x, y, z)]; }
   double get(int x, int y, int z) const {
     if (std::abs(x) > reach_ || std::abs(y) > reach_ || std::abs(z) > reach_) return 0;
-    return const_cast<Cube*>(this)->at(x, y, z);
+    return values_[indexOf(x, y, z)];
   }
   template <class Body>
   void forEach(const Body& body) {
@@ -33,6 +31,10 @@ class Cube {
   }
 
  private:
+  std::size_t indexOf(int x, int y, int z) const {
+    return cubeIndex(x + reach_, y + reach_, z + reach_, side_, side_);
+  }
+
   int reach_, side_;
   std::vector<double> values_;
 };
