@@ -16,7 +16,7 @@ double storedEnergy(const StepState& state, double dt) {
 }
 
 void EnergyBalance::begin(const EnergySums& sums, const StepState& state, double height) {
-  lift = 0.5 * state.errors.back().max * static_cast<double>(state.gravity.norm()) * height;
+  head = 0.5 * static_cast<double>(state.gravity.norm()) * height;
   kinetic = sums.kinetic;
   potential = sums.potential(state.gravity.cast<double>());
   start = kinetic + potential;
@@ -30,24 +30,23 @@ double EnergyBalance::bySolver(const StepState& state, const EnergySums& before,
          state.effectWork;
 }
 
+void EnergyBalance::beginStep(const StepState& state, long particles, double dt, bool first) {
+  constexpr double kKept = 7.0 / 8;
+  if (first) stored = storedEnergy(state, dt);
+  undoing_ = static_cast<double>(particles) * (2 * storedEnergy(state, dt) + head * state.errors.back().max);
+  if (first) elastic = undoing_;
+  if (elastic > undoing_) elastic = std::max(undoing_, kKept * elastic);
+}
+
 double EnergyBalance::excess(const StepState& state, const EnergySums& before, const EnergySums& now,
                              double dt, double rounding) const {
   const double gained = bySolver(state, before, now, dt),
                speedUp = dt * static_cast<double>(state.gravity.norm());
-  const auto count = static_cast<double>(now.particles);
   if (gained <= 0) return 0;
-  // Stored energy is an estimate within a factor of two.
-  const double allowed = count * (2 * stored + lift);
-  const double slack = count * (0.5 * speedUp * speedUp + rounding);
   constexpr double kOfKinetic = 0.05;
-  const double most = std::min(allowed - (solver - drainedAtRest), allowed + kOfKinetic * before.kinetic);
+  const double most = std::min(elastic, std::max(undoing_, kOfKinetic * before.kinetic));
+  const double slack = static_cast<double>(now.particles) * (0.5 * speedUp * speedUp + rounding);
   return gained > most + slack ? gained - most : 0;
-}
-
-bool EnergyBalance::atRest(const StepState& state, const EnergySums& sums, double dt) {
-  constexpr double kStepsOfGravity = 4;
-  const double speed = kStepsOfGravity * dt * static_cast<double>(state.gravity.norm());
-  return sums.kinetic <= 0.5 * static_cast<double>(sums.particles) * speed * speed;
 }
 
 void EnergyBalance::record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
@@ -58,11 +57,11 @@ void EnergyBalance::record(const StepState& state, const EnergySums& before, con
   potential = now.potential(gravity);
   walls += byWalls;
   effects += state.effectWork;
-  if (atRest(state, before, dt)) drainedAtRest += std::max(-state.effectWork, 0.0);
-  solver += bySolver(state, before, now, dt);
+  const double gained = bySolver(state, before, now, dt);
+  solver += gained;
+  elastic = std::max(0.0, elastic - gained);
   if (now.particles > 0) {
     mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
-    mostRisen = std::max(mostRisen, (solver + std::min(effects, 0.0)) / static_cast<double>(now.particles));
   }
   sample(time, now.particles);
 }
@@ -87,12 +86,11 @@ void EnergyBalance::visit(StateVisitor& visitor) {
   visitor.number("/energy/walls", walls);
   visitor.number("/energy/emitters", emitters);
   visitor.number("/energy/effects", effects);
-  visitor.number("/energy/drained_at_rest", drainedAtRest);
   visitor.number("/energy/solver", solver);
   visitor.number("/energy/most_gained", mostGained);
-  visitor.number("/energy/most_risen", mostRisen);
   visitor.number("/energy/stored", stored);
-  visitor.number("/energy/lift", lift);
+  visitor.number("/energy/head", head);
+  visitor.number("/energy/elastic", elastic);
   std::int64_t stride = stride_, until = untilSample_;
   visitor.integer("/energy/stride", stride);
   visitor.integer("/energy/until_sample", until);

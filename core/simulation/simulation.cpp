@@ -241,19 +241,24 @@ void Simulation::State::partCrowded() {
 
 /// Energy never grows without a source, see holdEnergy().
 void Simulation::State::takeBackExcess(const EnergySums& before, double dt) {
-  // Velocities are differences of positions, which are rounded: errors of steps that do not know of each
-  // other.
-  const double rounding = 0x1p-24 * limits.farthest / dt * static_cast<double>(health.maxSpeed) *
-                          std::sqrt(static_cast<double>(statistics.steps + 1));
+  // Velocities are differences of positions, which are rounded.
+  const double rounding = 0x1p-24 * limits.farthest / dt * static_cast<double>(health.maxSpeed);
   const double excess = statistics.energy.excess(step, before, health.energy, dt, rounding);
   if (excess <= 0) return;
-  const double factor = holdEnergy(step, effects, excess);
-  if (factor == 1) return;
-  statistics.note(
-      "energy_held", statistics.steps + 1,
-      "a step would have added " + std::to_string(excess / static_cast<double>(health.energy.particles)) +
-          " J/kg from nothing; what it changed of velocities was scaled by " + std::to_string(factor));
-  health = inspect(step, limits);
+  const auto count = static_cast<double>(health.energy.particles);
+  if (const HeldEnergy held = holdEnergy(step, effects, excess); held.particles > 0) {
+    statistics.note("energy_held", statistics.steps + 1,
+                    "a step would have added " + std::to_string(excess / count) + " J/kg from nothing; " +
+                        std::to_string(held.taken / count) + " were taken back from " +
+                        std::to_string(held.particles) + " of " + std::to_string(health.energy.particles) +
+                        " particles, where they were gained");
+    health = inspect(step, limits);
+  }
+  if (const double left = statistics.energy.excess(step, before, health.energy, dt, rounding); left > 0) {
+    statistics.note("energy_gained", statistics.steps + 1,
+                    "a step has added " + std::to_string(left / count) +
+                        " J/kg from nothing, which could not be taken back");
+  }
 }
 
 /// The state stays the last good one, and the simulation stops there.
@@ -296,7 +301,7 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
   EnergySums before = health.energy;
-  if (statistics.steps == 0) statistics.energy.stored = storedEnergy(step, dt);
+  statistics.energy.beginStep(step, before.particles, dt, statistics.steps == 0);
   if (!emission.empty()) step.times.time("emitters", [&] { before += emit(start); });
   const StepRefusal refusal = advanceStep(step, effects);
   stepTaken = !refusal.any();

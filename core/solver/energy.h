@@ -53,8 +53,6 @@ class WallWork {
   void add(double displacementTimesVelocity) { now_ += displacementTimesVelocity; }
   /// An iteration that the walls pushed by `displacementTimesVelocity`, stretched by `weight`.
   void iterate(double displacementTimesVelocity, float weight);
-  /// What is left of the work when all pushes of the step are scaled.
-  void scale(double factor) { now_ *= factor; }
   double sum() const { return now_; }
 
  private:

@@ -2,60 +2,232 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace migiwa {
 
 namespace {
 
-/// Energy over the share r of the solve's changes that is taken back: E(r) = E(0) - r slope + r^2 bend.
+/// Energy over the share r of a change that is taken back: E(r) = E(0) - r slope + r^2 bend.
 struct Parabola {
   double slope = 0, bend = 0;
+
+  /// The smallest share up to 1 that takes `excess`, or most where there is less; 0 where there is none.
+  double share(double excess) const {
+    if (excess <= 0 || slope <= 0 || bend <= 0) return 0;
+    const double under = slope * slope - 4 * bend * excess;
+    return std::min(1.0, under > 0 ? 2 * excess / (slope + std::sqrt(under)) : slope / (2 * bend));
+  }
+  double taken(double share) const { return share * (slope - share * bend); }
 };
 
-/// What the solve made of a particle's velocity, before effects on velocities (m/s).
-Vec3f solvedVelocity(const StepState& state, std::size_t i) {
-  return (state.particles.position[i].xyz() - state.before.position[i].xyz()) / state.timeStep;
+Parabola operator+(const Parabola& a, const Parabola& b) {
+  return {a.slope + b.slope, a.bend + b.bend};
 }
+
+/// The share of a change of a velocity that makes it larger than it came, 0 where the velocity is no larger.
+/// Both are relative ones; `along` is came . change, `square` that of the change.
+float tooMuch(float along, float square) {
+  if (!(2 * along + square > 0)) return 0;
+  return along >= 0 ? 1 : 1 + 2 * along / square;
+}
+
+/// The changes of velocity that a step's solve has made, and what is taken back of them.
+class Taking {
+ public:
+  explicit Taking(StepState& state) : state_(state), half_(0.5F * state.timeStep * state.gravity) {
+    const std::size_t n = state.particles.size();
+    change_.resize(n), back_.resize(n), degree_.resize(n), group_.resize(n), gains_.resize(n);
+    forAll([&](std::size_t i) {
+      const Vec3f way = state_.particles.position[i].xyz() - state_.before.position[i].xyz();
+      change_[i] = Float4(Vec3f(way / state_.timeStep - came(i)));
+    });
+    made_ = change_;
+    findGroups();
+  }
+
+  /// Takes what pairs and walls have gained of up to `excess`; returns what it took.
+  double takeFromPairs(double excess) {
+    forAll([&](std::size_t i) { gains_[i] = ofGroup_[group_[i]] > 0 && neighbourhoodGains(i) ? 1 : 0; });
+    forAll([&](std::size_t i) {
+      std::uint32_t count = 0;
+      for (const std::uint32_t j : state_.neighbours.of(i))
+        if (shareOf(i, j) > 0) ++count;
+      degree_[i] = count;
+    });
+    return take(excess, [&](std::size_t i) {
+      Vec3f back = Vec3f::Zero();
+      float wallWork = 0;
+      for (const std::uint32_t j : state_.neighbours.of(i)) {
+        // One over the larger number of pairs: the changes come together and none passes its neighbours'.
+        const float share = shareOf(i, j) / static_cast<float>(1 + std::max(degree_[i], degree_[j]));
+        if (share > 0) back += share * Vec3f(change_[i].xyz() - change_[j].xyz());
+      }
+      if (Wall wall; atWall(i, wall) && wall.share > 0) {
+        const float push =
+            wall.share / static_cast<float>(1 + degree_[i]) * change_[i].xyz().dot(wall.normal);
+        back += push * wall.normal;
+        wallWork = push * wall.velocity;
+      }
+      back_[i] = Float4(back, wallWork);
+    });
+  }
+
+  /// Takes of all changes in the groups that gained. Of one at moving walls nobody knows what they gave.
+  double takeFromGroups(double excess) {
+    if (state_.boundary.moves())
+      for (const WallSlot& slot : state_.wallSlots) ofGroup_[group_[slot.particle]] = 0;
+    return take(excess, [&](std::size_t i) {
+      back_[i] = ofGroup_[group_[i]] > 0 ? Float4(change_[i].xyz()) : Float4(Vec3f(Vec3f::Zero()));
+    });
+  }
+
+  /// Writes the velocities; returns how many it has changed.
+  std::size_t finish() {
+    return parallelReduce(
+        state_.pool, change_.size(), std::size_t{0},
+        [&](std::size_t begin, std::size_t end) {
+          std::size_t count = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            state_.particles.velocity[i].setXyz(came(i) + change_[i].xyz());
+            if (change_[i].xyz() != made_[i].xyz()) ++count;
+          }
+          return count;
+        },
+        [](std::size_t a, std::size_t b) { return a + b; });
+  }
+
+ private:
+  struct Wall {
+    Vec3f normal;
+    float velocity = 0;  ///< of the wall along the normal (m/s)
+    float share = 0;
+  };
+
+  template <class One>
+  void forAll(const One& one) {
+    parallelFor(state_.pool, change_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) one(i);
+    });
+  }
+  Vec3f came(std::size_t i) const { return state_.before.velocity[i].xyz(); }
+
+  /// Numbers the groups of particles that neighbours connect, and adds up what each has gained.
+  void findGroups() {
+    std::iota(group_.begin(), group_.end(), 0U);
+    const auto root = [&](std::uint32_t i) {
+      while (group_[i] != i) i = group_[i] = group_[group_[i]];
+      return i;
+    };
+    for (std::uint32_t i = 0; i < group_.size(); ++i) {
+      for (const std::uint32_t j : state_.neighbours.of(i)) {
+        const std::uint32_t a = root(i), b = root(j);
+        group_[std::max(a, b)] = std::min(a, b);
+      }
+    }
+    ofGroup_.assign(group_.size(), 0);
+    for (std::uint32_t i = 0; i < group_.size(); ++i) {
+      group_[i] = root(i);
+      // Where the particle ends counts, too. What moving walls gave is among it: whose it is nobody knows.
+      const Vec3d change = change_[i].xyz().cast<double>();
+      ofGroup_[group_[i]] += change.dot(Vec3f(came(i) - half_).cast<double>()) + 0.5 * change.squaredNorm();
+    }
+  }
+
+  /// Of a pair: (came . change, |change|^2), both relative.
+  std::pair<float, float> gainOf(std::size_t i, std::size_t j) const {
+    const Vec3f change = change_[i].xyz() - change_[j].xyz();
+    return {Vec3f(came(i) - came(j)).dot(change), change.squaredNorm()};
+  }
+  float shareOf(std::size_t i, std::size_t j) const {
+    if (gains_[i] == 0 && gains_[j] == 0) return 0;
+    const auto [along, square] = gainOf(i, j);
+    return tooMuch(along, square);
+  }
+  bool atWall(std::size_t i, Wall& wall) const {
+    const std::uint32_t slot = state_.wallSlot.empty() ? StepState::kNoWall : state_.wallSlot[i];
+    if (slot == StepState::kNoWall || gains_[i] == 0) return false;
+    const Vec3f gradient = state_.wallSlots[slot].sample.pairGradient;
+    const float length = gradient.norm();
+    if (!(length > 0)) return false;
+    wall.normal = gradient / length;
+    wall.velocity = state_.boundary.wallVelocity(state_.particles.position[i].xyz()).dot(wall.normal);
+    const float change = change_[i].xyz().dot(wall.normal);
+    wall.share = tooMuch((came(i).dot(wall.normal) - wall.velocity) * change, change * change);
+    return true;
+  }
+  /// Whether a particle and its neighbours move faster among each other, or off a wall, than they came.
+  bool neighbourhoodGains(std::size_t i) {
+    float gained = 0;
+    for (const std::uint32_t j : state_.neighbours.of(i)) {
+      const auto [along, square] = gainOf(i, j);
+      gained += 2 * along + square;
+    }
+    if (gained > 0) return true;
+    gains_[i] = 1;
+    Wall wall;
+    return atWall(i, wall) && wall.share > 0;
+  }
+
+  /// Fills in back_ for each particle by `fill` and takes as much of that as `excess` asks for.
+  template <class Fill>
+  double take(double excess, const Fill& fill) {
+    const std::pair<Parabola, double> sums = parallelReduce(
+        state_.pool, change_.size(), std::pair<Parabola, double>{},
+        [&](std::size_t begin, std::size_t end) {
+          std::pair<Parabola, double> part;
+          for (std::size_t i = begin; i < end; ++i) {
+            fill(i);
+            const Vec3d back = back_[i].xyz().cast<double>();
+            const auto work = static_cast<double>(back_[i].w);
+            part.first.slope += back.dot(Vec3f(came(i) + change_[i].xyz() + half_).cast<double>()) - work;
+            part.first.bend += 0.5 * back.squaredNorm();
+            part.second += work;
+          }
+          return part;
+        },
+        [](const auto& a, const auto& b) { return std::pair(a.first + b.first, a.second + b.second); });
+    const double share = sums.first.share(excess);
+    if (share <= 0) return 0;
+    forAll([&](std::size_t i) {
+      change_[i] = Float4(Vec3f(change_[i].xyz() - static_cast<float>(share) * back_[i].xyz()));
+    });
+    state_.wallWork.add(-share * sums.second * static_cast<double>(state_.timeStep));
+    return sums.first.taken(share);
+  }
+
+  StepState& state_;
+  Vec3f half_;                         ///< what gravity adds in half a step (m/s)
+  std::vector<Float4> change_, made_;  ///< as it is now, and as the solve has made it (m/s)
+  std::vector<Float4> back_;  ///< to be taken of it (m/s); w: of that, times the velocity of walls (m^2/s^2)
+  std::vector<std::uint32_t> degree_;  ///< pairs that gained
+  std::vector<std::uint32_t> group_;   ///< its least member
+  std::vector<std::uint8_t> gains_;    ///< whether its neighbourhood does
+  std::vector<double> ofGroup_;        ///< what it gained (m^2/s^2)
+};
 
 }  // namespace
 
-double holdEnergy(StepState& state, EffectPipeline& effects, double excess) {
-  const std::size_t n = state.particles.size();
-  const Vec3f halfGain = 0.5F * state.timeStep * state.gravity;
-  Parabola energy = parallelReduce(
-      state.pool, n, Parabola{},
-      [&](std::size_t begin, std::size_t end) {
-        Parabola part;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec3f solved = solvedVelocity(state, i);
-          const Vec3d change = Vec3f(solved - state.before.velocity[i].xyz()).cast<double>();
-          part.slope += change.dot(Vec3f(solved + halfGain).cast<double>());
-          part.bend += 0.5 * change.squaredNorm();
-        }
-        return part;
-      },
-      [](const Parabola& a, const Parabola& b) {
-        return Parabola{a.slope + b.slope, a.bend + b.bend};
-      });
-  energy.slope -= state.wallWork.sum() / static_cast<double>(state.timeStep);
-  if (excess <= 0 || energy.slope <= 0 || energy.bend <= 0) return 1;
-
-  // The smaller root of r slope - r^2 bend = excess, or the top of the parabola where that is lower.
-  const double under = energy.slope * energy.slope - 4 * energy.bend * excess;
-  const double back = std::min(
-      1.0, under > 0 ? 2 * excess / (energy.slope + std::sqrt(under)) : energy.slope / (2 * energy.bend));
-  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f predicted = state.before.velocity[i].xyz();
-      const Vec3f change = solvedVelocity(state, i) - predicted;
-      state.particles.velocity[i].setXyz(predicted + static_cast<float>(1 - back) * change);
-    }
-  });
-  state.wallWork.scale(1 - back);
+HeldEnergy holdEnergy(StepState& state, EffectPipeline& effects, double excess) {
+  HeldEnergy held;
+  if (excess <= 0) return held;
+  // Each pass takes what pairs can give at once; a front that lies deep in the fluid needs several.
+  constexpr int kMostPasses = 32;
+  constexpr double kAll = 1 - 1e-6;
+  Taking taking(state);
+  for (int pass = 0; pass < kMostPasses && held.taken < kAll * excess; ++pass) {
+    const double taken = taking.takeFromPairs(excess - held.taken);
+    held.taken += taken;
+    if (taken <= 1e-3 * held.taken) break;
+  }
+  if (held.taken < kAll * excess) held.taken += taking.takeFromGroups(excess - held.taken);
+  held.particles = taking.finish();
+  if (held.particles == 0) return {};
   state.effectWork -= std::exchange(state.velocityEffectWork, 0);
   effects.changeVelocities(state, {});
-  return 1 - back;
+  return held;
 }
 
 }  // namespace migiwa

@@ -102,41 +102,63 @@ EnergySums tenWith(double kinetic) {
   return sums;
 }
 
-TEST(EnergyBalance, WhatStepsMayAddIsAddedUpAndWhatIsOwedStaysOwed) {
-  ThreadPool pool(1);
-  const Boundary none;
-  StepState step(pool, none);
-  EnergyBalance energy;
-  energy.stored = 1;  // 2 for each particle, with the estimate's factor
-  const auto excess = [&](double gained, double rounding = 0) {
-    return energy.excess(step, tenWith(1000), tenWith(1000 + gained), 0.1, rounding);
-  };
-  EXPECT_EQ(excess(15), 0);
-  EXPECT_EQ(excess(25), 5);
-  EXPECT_EQ(excess(25, 0.5), 0);
-  EXPECT_EQ(excess(25, 0.4), 5);
-  energy.solver = 24;  // 4 more than it may
-  EXPECT_EQ(excess(3), 7);
-  EXPECT_EQ(excess(-3), 0) << "there is nothing to take back";
-  energy.drainedAtRest = 5;
-  EXPECT_EQ(excess(3), 2);
-  energy.solver = -1e6;
-  EXPECT_EQ(excess(100), 30) << "beyond a twentieth of the kinetic energy, however much has been dissipated";
+/// A balance of ten particles whose last step left no density errors, unless `meanSquare` says so.
+class TenParticles {
+ public:
+  explicit TenParticles(double meanSquare = 0) {
+    step_.supportRadius = 1;
+    step_.lattice.squaredGradients = 1;
+    leave(meanSquare);
+  }
+
+  void leave(double meanSquare) { step_.errors = {{0, 0, meanSquare}}; }
+  void begin(bool first = false) { balance_.beginStep(step_, 10, 1, first); }
+  double excess(double kinetic, double gained, double rounding = 0) const {
+    return balance_.excess(step_, tenWith(kinetic), tenWith(kinetic + gained), 1, rounding);
+  }
+  void take(double kinetic, double gained) {
+    balance_.record(step_, tenWith(kinetic), tenWith(kinetic + gained), 1, 0);
+  }
+
+ private:
+  ThreadPool pool_{1};
+  Boundary none_{{}};
+  StepState step_{pool_, none_};
+  EnergyBalance balance_;
+};
+
+TEST(EnergyBalance, TheFirstStepsMayAddWhatTheStartHasStored) {
+  TenParticles fluid(2);  // 1 for each, 20 in all with the estimate's factor
+  fluid.begin(true);
+  EXPECT_EQ(fluid.excess(0, 15), 0);
+  EXPECT_EQ(fluid.excess(0, 25), 5);
+  EXPECT_EQ(fluid.excess(0, 25, 0.5), 0);
+  EXPECT_EQ(fluid.excess(0, 25, 0.4), 5);
+  EXPECT_EQ(fluid.excess(100, -3), 0) << "there is nothing to take back";
+  fluid.take(0, 15);
+  fluid.begin();
+  EXPECT_EQ(fluid.excess(0, 7), 2) << "what has been given is gone, though the errors are still there";
 }
 
-TEST(EnergyBalance, WhatEffectsTakeOfMovingFluidMayNotBeAddedAnew) {
-  ThreadPool pool(1);
-  const Boundary none;
-  StepState step(pool, none);
-  step.gravity = Vec3f(0, -8, 0);
-  step.effectWork = -3;
-  EnergyBalance energy;
-  // Four steps of 1/8 s make 4 m/s, 8 m^2/s^2 for each particle.
-  energy.record(step, tenWith(81), tenWith(78), 0.125, 0);
-  EXPECT_EQ(energy.drainedAtRest, 0);
-  energy.record(step, tenWith(80), tenWith(77), 0.125, 0);
-  EXPECT_EQ(energy.drainedAtRest, 3);
-  EXPECT_EQ(energy.effects, -6);
+TEST(EnergyBalance, DensityErrorsGiveBackWhatWentIntoThem) {
+  TenParticles fluid;
+  fluid.begin(true);
+  EXPECT_EQ(fluid.excess(1000, 1), 1);
+  fluid.take(1000, -500);
+  fluid.leave(2);
+  for (int step = 0; step < 200; ++step) fluid.begin();
+  EXPECT_NEAR(fluid.excess(1000, 25), 5, 1e-6) << "20, however much has been dissipated";
+}
+
+TEST(EnergyBalance, WhatWasDissipatedLongBeforeIsNotGivenBack) {
+  TenParticles fluid;
+  fluid.begin(true);
+  fluid.take(1000, -80);
+  fluid.begin();
+  EXPECT_NEAR(fluid.excess(1000, 60), 10, 1e-9) << "a twentieth of the kinetic energy";
+  EXPECT_NEAR(fluid.excess(1e6, 90), 20, 1e-9) << "seven eighths of what the step before took";
+  for (int step = 0; step < 50; ++step) fluid.begin();
+  EXPECT_NEAR(fluid.excess(1e6, 90), 90, 0.2);
 }
 
 TEST(EnergyBalance, TheHistoryStaysShortAndEven) {
