@@ -11,14 +11,17 @@
 
 namespace migiwa::testing {
 
-/// What a run was seen to do. Energies are those of all particles over their mass (J/kg = m^2/s^2).
+/// What a run was seen to do. Energies are those of all particles over their mass (J/kg = m^2/s^2), from
+/// positions and velocities at the end of each frame: the program's own balance is what they are held
+/// against.
 struct Observed {
-  double energyGain = 0;   ///< most that the solver ever has added to kinetic + potential energy
-  double energyBound = 0;  ///< the most that it may: what was stored at the start, see observe()
-  double energyRisen = 0;  ///< most that kinetic + potential energy rose above what work and emitters gave
-  double energyWork = 0;   ///< of moving walls and emitters, at the end
-  double maxSpeed = 0;     ///< (m/s)
-  double penetration = 0;  ///< (m)
+  double energyGain = 0;    ///< most that kinetic + potential energy ever was above the start's; what moving
+                            ///< walls and emitters gave, which they alone know, is taken off
+  double energyBound = 0;   ///< the most that it may: what was stored at the start, see EnergyWatch
+  double balanceOff = 0;    ///< most that the program's balance ever was off what was seen
+  double balanceBound = 0;  ///< the most that it may: rounding
+  double maxSpeed = 0;      ///< (m/s)
+  double penetration = 0;   ///< (m)
   long lost = 0, nonfinite = 0;
   double nearest = std::numeric_limits<double>::infinity();  ///< least distance to a wall over the spacing
   double momentum = 0;    ///< change of momentum per mass that gravity does not explain (m/s)

@@ -75,7 +75,7 @@ TEST_P(Soak, HoldsWithEveryMethodAndThreadCount) {
       const Observed seen = observe(sceneOf(GetParam(), method), until, 1);
       EXPECT_EQ(seen.nonfinite, 0);
       EXPECT_EQ(seen.lost, 0);
-      EXPECT_LE(seen.energyRisen, seen.energyBound);
+      EXPECT_LE(seen.energyGain, seen.energyBound);
     } catch (const InputError& refused) {
       // Grids of gamma over a kilometre fit no memory, and that is what it has to say.
       EXPECT_EQ(method, "baked") << refused.what();

@@ -53,11 +53,13 @@ constexpr const char* kHeader = R"(# Hard cases
 Scenes that break particle fluids, and what mechanics expects of each. They are in [scenes/hard](../../scenes/hard): open one
 with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run hard` writes this file anew.
 
-- **Energy** is the most that the solver ever has added to kinetic and potential energy up to any step, over the mass (J/kg);
-  what moving walls, emitters and effects give is taken off. It may add what is stored in fluid that starts too dense: with the
+- **Energy** is the most that kinetic and potential energy ever were above the start's at the end of a frame, over the mass
+  (J/kg), as the test adds them up from positions and velocities; only what moving walls give is the program's word. Nothing
+  else gives any, so that it may rise by what is stored in fluid that starts too dense: with the
   density errors C of the start, (C h/dt)² over the sum of squared gradients of the resting lattice is the kinetic energy of
   undoing them in one step (an estimate within a factor of two, which the bound has), and the largest of them times g H/2 is
   what water of the height H lifts itself by. Further (g dt)²/2, which a particle that touches a wall may gain, and rounding.
+  The program's own balance may be off from that by rounding, and where steps change their length by half a step's fall.
 - **Speed** is the largest of any particle at any time (m/s), **density** the mean and the largest of max(ρ/ρ₀ − 1, 0), the mean at
   the end, **rest** the rms speed at the end (m/s), with a bound where the water has to be at rest.
 - No particle may be lost, and none may get past a wall. Without walls the momentum may change by gravity only, to 10⁻⁴.
@@ -100,8 +102,10 @@ constexpr const char* kShort = R"(
   section that the water has to pass shrinks to a particle's. With half the spacing it shrinks twice as far, and they reach
   31 m/s; with shorter time steps it is 11 to 19 m/s. They take their energy from the others.
 - In `slim_shell_holed` the surface ends at the hole's edge, and inside and outside change places from point to point: single
-  particles leave it faster than anything falls (4 m/s). Energy is held all the same. An open mesh that is
+  particles leave it faster than anything falls (4 m/s). Energy is held all the same, but for what walls lift (below). An open mesh that is
   wound inwards as a whole takes all water for solid, and only the warning says so.
+- What a step made from nothing is taken back of velocities, where it was gained. What it made by lifting water it has already
+  in places: then less is taken back than was gained, and `energy_gained` in the report's `trouble` says how much.
 - Walls that move are no `wall_jump`: what they push may go faster than it came.
 - `./run soak hard` runs every case with 2, 5, 16 and 64 threads, too (the hash stays the same), and with `mean`, `nearest`,
   `product`, `copula`, `directions` and `baked`: no particle is lost, all stays finite, and kinetic and potential energy never
