@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -16,8 +19,13 @@ namespace migiwa {
 
 namespace {
 
-constexpr int kUnforeseen = 1;
 constexpr int kMostThreads = 256;
+constexpr const char* kExitCodes =
+    "Exit codes:\n"
+    "  0  done\n"
+    "  2  what was given is wrong: each fault with its place, what was expected and what was found\n"
+    "  3  numerical trouble: a value that is not finite, a lost particle, a bound that was broken\n"
+    "  4  something is missing here: a display, EGL, gnuplot, memory, room for what is written\n";
 
 /// What every command line holds beside the command's own options.
 struct CommonWords {
@@ -78,7 +86,9 @@ void requireCommand(const std::vector<std::string>& arguments, const std::vector
 
 int parseAndRun(std::vector<std::string> arguments) {
   CLI::App program("Migiwa: particle fluids at walls.", "migiwa");
-  program.footer("Without a command, the window opens. More about a command: migiwa COMMAND --help");
+  program.footer(
+      std::string("Without a command, the window opens. More about a command: migiwa COMMAND --help\n\n") +
+      kExitCodes);
   program.require_subcommand(1);
 
   const std::vector<Command> commands = allCommands();
@@ -88,6 +98,8 @@ int parseAndRun(std::vector<std::string> arguments) {
     CLI::App* const parser = program.add_subcommand(command.name, command.summary);
     declared.push_back({parser, command.setUp(*parser)});
     addCommonOptions(*parser, words);
+    const std::string own = parser->get_footer() == program.get_footer() ? "" : parser->get_footer() + "\n\n";
+    parser->footer(own + kExitCodes);
   }
 
   if (arguments.empty()) arguments.emplace_back("view");
@@ -107,32 +119,61 @@ int parseAndRun(std::vector<std::string> arguments) {
   return chosen->run(commonOptions(words));
 }
 
-/// What was printed may still be in memory, and may not fit where it goes.
+/// What was printed may still be in memory, and may not fit where it goes, or nobody may read it any more.
 void requirePrinted() {
-  if (!std::cout.flush())
-    throw InputError("standard output", "could not be written to its end: is its disk full?");
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw OutputError("standard output",
+                      "could not be written to its end: is its disk full, or its reader gone?");
 }
+
+int told(int code, const std::string& message) {
+  std::cerr << message << '\n';
+  return code;
+}
+
+constexpr const char* kNoMemory = "migiwa: out of memory; a larger particle_spacing takes less";
 
 }  // namespace
 
-int runCommandLine(std::vector<std::string> arguments) {
+int exitCodeOf(std::exception_ptr failure) {
   try {
-    const int code = parseAndRun(std::move(arguments));
-    requirePrinted();
-    return code;
+    std::rethrow_exception(std::move(failure));
   } catch (const InputError& error) {
-    for (const Fault& fault : error.faults()) std::cerr << fault.text() << '\n';
-    return kBadInput;
+    return told(kBadInput, error.what());
+  } catch (const OutputError& error) {
+    return told(kSomethingMissing, error.what());
   } catch (const MissingError& error) {
-    std::cerr << "migiwa: " << error.what() << '\n';
-    return kSomethingMissing;
+    return told(kSomethingMissing, std::string("migiwa: ") + error.what());
   } catch (const std::bad_alloc&) {
-    std::cerr << "migiwa: out of memory; a larger particle_spacing takes less\n";
-    return kUnforeseen;
+    return told(kSomethingMissing, kNoMemory);
+  } catch (const std::length_error&) {
+    return told(kSomethingMissing, kNoMemory);  // an array longer than any memory
+  } catch (const std::filesystem::filesystem_error& error) {
+    return told(kBadInput, std::string("migiwa: expected a path that can be used, found one that cannot: ") +
+                               error.what());
+  } catch (const std::system_error& error) {
+    return told(kSomethingMissing, std::string("migiwa: the system refuses: ") + error.what());
   } catch (const std::exception& error) {
-    std::cerr << "migiwa: " << error.what() << '\n';
-    return kUnforeseen;
+    return told(kNumericalTrouble, std::string("migiwa: unforeseen: ") + error.what());
+  } catch (...) {
+    return told(kNumericalTrouble, "migiwa: unforeseen");
   }
+}
+
+int runCommandLine(std::vector<std::string> arguments) {
+  int code = kDone;
+  try {
+    code = parseAndRun(std::move(arguments));
+  } catch (...) {
+    code = exitCodeOf(std::current_exception());
+  }
+  try {
+    requirePrinted();
+  } catch (...) {
+    const int ofPrinting = exitCodeOf(std::current_exception());
+    if (code == kDone) code = ofPrinting;  // what else went wrong has been told, and is more
+  }
+  return code;
 }
 
 }  // namespace migiwa

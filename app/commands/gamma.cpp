@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
@@ -70,6 +71,21 @@ void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool&
   writeTextFile(options.out, text);
 }
 
+/// Points of a map have to be apart for a float, and its picture has to have both sides.
+void requireMappable(const std::array<double, 4>& corners) {
+  constexpr double kFinest = 1e-4, kMostLopsided = 1000;
+  const double width = corners[2] - corners[0], height = corners[3] - corners[1];
+  double farthest = 0;
+  for (const double corner : corners) farthest = std::max(farthest, std::abs(corner));
+  const double least =
+      std::max({kFinest * farthest, std::max(width, height) / kMostLopsided, Range::kSmallestLength});
+  if (width >= least && height >= least) return;
+  std::ostringstream text;
+  text << "expected sides of at least " << least << " m for a window of this extent, found " << width
+       << " by " << height << " m";
+  throw InputError("--window", text.str());
+}
+
 /// `x0,y0,x1,y1` in m, or nothing: all of the scene in the cut, or three support radii about the origin where
 /// no wall is finite.
 MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
@@ -100,13 +116,19 @@ MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
       throw InputError("--window", "expected x0,y0,x1,y1 in m, the lower left corner first, found '" +
                                        options.window + "'");
   }
+  if (!options.window.empty()) requireMappable(corners);
   window.low[0] = corners[0], window.low[1] = corners[1];
   window.high[0] = corners[2], window.high[1] = corners[3];
   // Square cells, some 50,000 of them: what a picture shows.
   const double width = corners[2] - corners[0], height = corners[3] - corners[1];
   const double cell = std::sqrt(width * height / 50000);
-  window.columns = std::clamp(static_cast<int>(std::lround(width / cell)), 2, 2000);
-  window.rows = std::clamp(static_cast<int>(std::lround(height / cell)), 2, 2000);
+  // A window of next to no area has cells of no size.
+  const auto cellsAlong = [&](double length) {
+    const double cells = cell > 0 ? std::round(length / cell) : 2;
+    return static_cast<int>(std::clamp(cells, 2.0, 2000.0));
+  };
+  window.columns = cellsAlong(width);
+  window.rows = cellsAlong(height);
   return window;
 }
 
@@ -172,8 +194,7 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
     throw InputError(options.scene + ":/boundary/surfaces", "expected a wall to map gamma at, found none");
   const MapWindow window = windowOf(options, scene);
   const std::filesystem::path folder(options.map);
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
+  makeFolder(folder, "--map");
   const std::string stem = (folder / (scene.stem() + (options.allMethods ? "_methods" : "_gamma"))).string();
   requireWritable(stem + ".csv", "--map");
 

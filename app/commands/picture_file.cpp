@@ -44,7 +44,7 @@ void write(const std::filesystem::path& file, const Image& image, const Json& si
   std::filesystem::path beside = file;
   beside.replace_extension(".json");
   writeTextFile(file, encodePng(image));
-  writeTextFile(beside, sidecar.dump(2) + '\n');
+  writeTextFile(beside, sidecar.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 }  // namespace

@@ -12,13 +12,11 @@
 #include "app/platform/egl_context.h"
 #include "app/ui/number_text.h"
 #include "app/viewer/viewer.h"
-#include "core/base/error.h"
+#include "core/io/output_file.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
 namespace {
-
-constexpr int kGutter = 6;  ///< between the cells of a sheet (pixels)
 
 /// Draws the scene's variants; how a picture is kept is the caller's business.
 class Drawing {
@@ -92,14 +90,16 @@ bool renderPictures(const RenderJob& job, Drawing& drawing) {
 /// One row for each variant, one column for each time; a cell that a run did not reach stays empty.
 bool renderSheet(const RenderJob& job, Drawing& drawing) {
   const int columns = static_cast<int>(job.times.size()), rows = static_cast<int>(job.variants.size());
-  Image sheet(columns * (job.width + kGutter) - kGutter, rows * (job.height + kGutter) - kGutter);
+  Image sheet(columns * (job.width + kSheetGutter) - kSheetGutter,
+              rows * (job.height + kSheetGutter) - kSheetGutter);
   std::fill(sheet.rgba.begin(), sheet.rgba.end(), std::uint8_t{255});
   std::vector<std::vector<PictureRecord>> records;
   bool good = true;
   for (int row = 0; row < rows; ++row) {
     records.emplace_back();
     const auto place = [&](std::size_t time, const Image& image, const PictureRecord& record) {
-      sheet.paste(image, static_cast<int>(time) * (job.width + kGutter), row * (job.height + kGutter));
+      sheet.paste(image, static_cast<int>(time) * (job.width + kSheetGutter),
+                  row * (job.height + kSheetGutter));
       records.back().push_back(record);
     };
     good = drawing.run(job.variants[static_cast<std::size_t>(row)], place) && good;
@@ -113,12 +113,7 @@ bool renderSheet(const RenderJob& job, Drawing& drawing) {
 int render(const RenderOptions& options, const CommonOptions& common) {
   const RenderJob job = checkedRenderJob(options, common);
   Drawing drawing(job, options, common);
-  std::error_code error;
-  std::filesystem::create_directories(job.folder, error);
-  if (error) {
-    throw InputError("--out", "expected a folder that can be made, found " + job.folder.string() + " (" +
-                                  error.message() + ")");
-  }
+  makeFolder(job.folder, "--out");
   const bool good = options.compare.empty() ? renderPictures(job, drawing) : renderSheet(job, drawing);
   return good ? kDone : kNumericalTrouble;
 }

@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include <system_error>
 
 #include "app/commands/fault_collector.h"
 #include "app/commands/option_text.h"
 #include "app/ui/number_text.h"
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
+#include "core/scene/run_limit.h"
 #include "core/simulation/settings.h"
 
 namespace migiwa {
 namespace {
+
+constexpr double kBytesOfPixel = 12;  ///< of the sheet, and of what its file is made of
 
 std::string note(const Override& change) {
   // How walls are handled stands on every picture anyway.
@@ -38,6 +43,21 @@ void requireFolderName(const std::filesystem::path& folder) {
   }
 }
 
+/// Cells of a sheet are drawn into one picture: as large as other programs open it.
+void requireSheet(const RenderJob& job, std::size_t rows, std::size_t columns) {
+  constexpr double kLargestSide = 32767;
+  const double width = static_cast<double>(columns) * (job.width + kSheetGutter),
+               height = static_cast<double>(rows) * (job.height + kSheetGutter);
+  if (width > kLargestSide || height > kLargestSide) {
+    std::ostringstream text;
+    text << "expected a sheet of at most " << kLargestSide << " pixels a side, found " << columns
+         << " times of " << job.width << " and " << rows << " values of " << job.height
+         << " pixels; a smaller --size, or fewer of them, would do";
+    throw InputError("--compare", text.str());
+  }
+  requireMemory(kBytesOfPixel * width * height, "a sheet", "--compare");
+}
+
 }  // namespace
 
 RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& common) {
@@ -61,6 +81,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
       Scene scene = readScene(options.scene, overrides);
       requireSteppable(scene.boundary, scene.file);
       job.variants.push_back({overrides, itsNote, std::move(scene)});
+      if (!job.times.empty()) requireReachable(job.variants.back().scene, job.times.back(), "--times");
     });
   };
   if (options.compare.empty()) {
@@ -73,6 +94,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
       overrides.push_back(change);
       addVariant(overrides, note(change));
     }
+    collect([&] { requireSheet(job, changes.size(), options.times.empty() ? 3 : job.times.size()); });
     // Not even the option could be read: then the scene itself is still to be looked at.
     if (changes.empty()) addVariant(common.overrides, "");
   }

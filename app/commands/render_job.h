@@ -10,6 +10,8 @@
 
 namespace migiwa {
 
+inline constexpr int kSheetGutter = 6;  ///< between the cells of a sheet (pixels)
+
 struct RenderOptions {
   std::string scene, out, times, size = "1280x720", compare;
   bool panels = false, timings = false;

@@ -8,6 +8,7 @@
 #include "core/io/output_file.h"
 #include "core/io/particle_export.h"
 #include "core/scene/nearest_name.h"
+#include "core/scene/run_limit.h"
 #include "core/simulation/settings.h"
 
 namespace migiwa {
@@ -28,6 +29,8 @@ class JobReader {
       requireSteppable(scene->boundary, scene->file);
     });
     seconds("--until", options_.until, Range::closed(0, kLongestRun));
+    if (scene && options_.until && Range::closed(0, kLongestRun).contains(*options_.until))
+      collect([&] { requireReachable(*scene, *options_.until, "--until"); });
     writable("--report", options_.report);
     readExport(scene ? scene->stem() : "");
     seconds("--save-every", options_.saveEvery, Range::positive(kLongestRun));

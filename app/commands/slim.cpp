@@ -54,12 +54,15 @@ ImportedShape checkedShape(const SlimOptions& options, const CommonOptions& comm
 /// A machine without EGL goes without the picture.
 void drawPicture(const SlimOptions& options, const SlimData& data, ThreadPool& pool) {
   const std::filesystem::path file = pictureFile(options);
+  std::string picture;
   try {
-    writeTextFile(file, encodePng(drawSlim(data, pool)));
-    std::printf("picture          %s\n", file.c_str());
+    picture = encodePng(drawSlim(data, pool));
   } catch (const MissingError& error) {
     std::cerr << "note: no picture " << file.string() << ": " << error.what() << '\n';
+    return;
   }
+  writeTextFile(file, picture);
+  std::printf("picture          %s\n", file.c_str());
 }
 
 int fit(const SlimOptions& options, const CommonOptions& common) {

@@ -33,7 +33,7 @@ class Study {
     if (options_.list) return list();
     records_.resize(job_.plan.size());
     load(job_.folder);
-    std::filesystem::create_directories(job_.folder / "runs");
+    makeFolder(job_.folder / "runs", "--out");
     if (options_.merge.empty()) {
       simulate();
       // One of many: the others may be at work elsewhere, on the same folder.
@@ -141,7 +141,8 @@ class Study {
 
   void merge() {
     for (const std::string& part : options_.merge) {
-      if (!std::filesystem::is_directory(std::filesystem::path(part) / "runs"))
+      std::error_code ignored;
+      if (!std::filesystem::is_directory(std::filesystem::path(part) / "runs", ignored))
         throw InputError("--merge", "expected the --out of a study, found no folder " + part + "/runs");
       load(part);
     }

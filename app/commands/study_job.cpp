@@ -7,6 +7,7 @@
 #include "app/commands/option_text.h"
 #include "core/base/fields.h"
 #include "core/io/output_file.h"
+#include "core/scene/run_limit.h"
 #include "core/simulation/settings.h"
 
 namespace migiwa {
@@ -83,7 +84,7 @@ StudyJob checkedStudyJob(const StudyOptions& options, const CommonOptions& commo
   const std::size_t size = plan.size();
   requireRange(collect, "--vary", size, size <= kMostRuns,
                "at most " + std::to_string(kMostRuns) + " runs in all");
-  if (options.run)
+  if (options.run && size <= kMostRuns)
     requireRange(collect, "--run", *options.run, *options.run >= 1 && *options.run <= static_cast<long>(size),
                  "the number of a run in [1, " + std::to_string(size) + "] (--list shows them)");
   collect([&] { requireFolder(job.folder); });
@@ -94,6 +95,8 @@ StudyJob checkedStudyJob(const StudyOptions& options, const CommonOptions& commo
         const Scene scene = readScene(plan.scene, plan.overrides(run));
         requireSteppable(scene.boundary, scene.file);
         if (!duration) duration = scene.duration;
+        if (options.until || scene.duration != *duration)
+          requireReachable(scene, options.until.value_or(*duration), options.until ? "--until" : "--vary");
       });
     plan.until = options.until.value_or(duration.value_or(0));
   }

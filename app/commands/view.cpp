@@ -44,7 +44,8 @@ fs::path freePictureName() {
     std::string digits = std::to_string(number);
     digits.insert(0, digits.size() < 4 ? 4 - digits.size() : 0, '0');
     const fs::path file = "migiwa_" + digits + ".png";
-    if (!fs::exists(file)) return file;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return file;
   }
 }
 

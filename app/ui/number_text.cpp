@@ -26,6 +26,7 @@ std::string milliseconds(double seconds, bool shown) {
 }
 
 Ticks roundTicks(double low, double high, int wanted) {
+  if (!(high > low) || !std::isfinite(high - low)) return {};
   const double rough = (high - low) / std::max(wanted - 1, 1);
   const double exponent = std::floor(std::log10(rough));
   const double digits = rough / std::pow(10, exponent);

@@ -98,7 +98,8 @@ std::string SceneSession::saveAs(const std::string& name, const std::string& tex
   std::string written = sceneTextWith(text, file_, now);
   try {
     writeTextFile(file, written);
-  } catch (const std::runtime_error& error) {
+  } catch (const OutputError& error) {
+    // The editor lists faults; to it this is one.
     throw InputError(file.string(), error.what());
   }
   file_ = file;

@@ -29,11 +29,18 @@ class InputError : public std::runtime_error {
   std::vector<Fault> faults_;
 };
 
-/// Something that this machine lacks: a display, an EGL device. The message says what to install. Exit
-/// code 4.
+/// Something that this machine lacks: a display, an EGL device, room on a disk. The message says what to do
+/// about it. Exit code 4.
 class MissingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// What was to be written could not be, for want of room or of a working disk: nothing that the user gave is
+/// wrong. `place` is the file or the stream.
+class OutputError : public MissingError {
+ public:
+  OutputError(const std::string& place, const std::string& message) : MissingError(place + ": " + message) {}
 };
 
 }  // namespace migiwa

@@ -23,14 +23,18 @@ namespace migiwa {
 
 /// Interval of allowed values. An open end excludes the bound itself.
 struct Range {
+  static constexpr double kSmallestLength = 1e-9;
+
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool openMin = false;
   bool openMax = false;
 
-  static Range closed(double a, double b) { return {a, b, false, false}; }
-  static Range halfOpen(double a, double b) { return {a, b, false, true}; }
-  static Range positive(double most) { return {0, most, true, false}; }
+  static constexpr Range closed(double a, double b) { return {a, b, false, false}; }
+  static constexpr Range halfOpen(double a, double b) { return {a, b, false, true}; }
+  static constexpr Range positive(double most) { return {0, most, true, false}; }
+  /// Of a length that something has (m): what is smaller is no length to a float's squares and cubes.
+  static constexpr Range length(double most) { return {kSmallestLength, most, false, false}; }
   bool contains(double v) const { return (openMin ? v > min : v >= min) && (openMax ? v < max : v <= max); }
   std::string text() const;
 };

@@ -55,7 +55,7 @@ void fieldsOf(Visitor& visitor, Visited<Visitor, Motion>& motion) {
         fields.vector("amplitude", motion.amplitude, {"m", "Direction and amplitude of the sway."});
         fields.number("degrees", motion.swing, kAngleRange,
                       {"degrees", "Amplitude of a turn about the axis of rotation."});
-        fields.number("period", motion.period, Range::positive(1e6),
+        fields.number("period", motion.period, Range::closed(1e-6, 1e6),
                       {"s", "Of one oscillation.", Presence::required});
       },
       &motion.oscillates);

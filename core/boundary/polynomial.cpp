@@ -78,7 +78,7 @@ void Polynomial::fields(Visitor& visitor, Visited<Visitor, Polynomial>& self) {
                  {"1", "The frame's z axis, into the fluid; any length but zero.", Presence::required});
   visitor.vector("x_axis", self.xAxis_,
                  {"1", "The frame's x axis; made perpendicular to the normal.", Presence::required});
-  visitor.number("radius", self.radius_, Range::positive(kLargestCoordinate),
+  visitor.number("radius", self.radius_, Range::length(kLargestCoordinate),
                  {"m", "Radius of the ball.", Presence::required});
   visitor.triples("coefficients", self.terms_,
                   {"", "Terms [i, j, c] of z = sum c x^i y^j, with i + j at most 3; c in m^(1 - i - j).",

@@ -55,9 +55,9 @@ void SlimSurface::describeFit(Visitor& visitor, Visited<Visitor, SlimSource>& so
 template <class Visitor>
 void SlimSurface::describeBowl(Visitor& visitor, Visited<Visitor, Bowl>& bowl) {
   visitor.vector("center", bowl.center, {"m", "Centre of the sphere.", Presence::required});
-  visitor.number("radius", bowl.radius, Range::positive(kLargestCoordinate),
+  visitor.number("radius", bowl.radius, Range::length(kLargestCoordinate),
                  {"m", "Of the sphere midway in the wall.", Presence::required});
-  visitor.number("thickness", bowl.thickness, Range::positive(kLargestCoordinate),
+  visitor.number("thickness", bowl.thickness, Range::length(kLargestCoordinate),
                  {"m", "Of the wall.", Presence::required});
   visitor.number("height", bowl.height, Range::closed(0, kLargestCoordinate),
                  {"m", "Of the rim above the centre: 0 is a bowl, more a glass with a round bottom."});

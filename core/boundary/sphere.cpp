@@ -23,7 +23,7 @@ void Sphere::fields(Visitor& visitor, Visited<Visitor, Sphere>& self) {
   visitor.choice("fluid", self.fluid_, kFluidNames,
                  {"", "The side of the wall that holds the fluid.", Presence::required});
   visitor.vector("center", self.centerExact_, {"m", "Centre.", Presence::required});
-  visitor.number("radius", self.radiusExact_, Range::positive(kLargestCoordinate),
+  visitor.number("radius", self.radiusExact_, Range::length(kLargestCoordinate),
                  {"m", "Radius.", Presence::required});
 }
 

@@ -1,9 +1,6 @@
 #include "core/io/output_file.h"
 
 #include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -68,6 +65,18 @@ class OpenFile {
   int descriptor_;
 };
 
+/// Whether a failure is one of the path that was given: another path, or a folder made first, would do.
+bool isOfPath(const std::error_code& reason) {
+  for (const std::errc code :
+       {std::errc::no_such_file_or_directory, std::errc::not_a_directory, std::errc::is_a_directory,
+        std::errc::permission_denied, std::errc::operation_not_permitted, std::errc::read_only_file_system,
+        std::errc::filename_too_long, std::errc::too_many_symbolic_link_levels, std::errc::invalid_argument,
+        std::errc::file_exists, std::errc::text_file_busy, std::errc::no_such_device_or_address,
+        std::errc::no_such_device, std::errc::directory_not_empty, std::errc::operation_not_supported})
+    if (reason == code) return true;
+  return false;
+}
+
 void syncFolder(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const OpenFile opened(folder, O_RDONLY | O_DIRECTORY);
@@ -75,6 +84,23 @@ void syncFolder(const fs::path& file) {
 }
 
 }  // namespace
+
+void throwNotWritten(const std::string& place, const std::error_code& reason) {
+  const std::string message = "could not be written: " + reason.message();
+  if (isOfPath(reason)) throw InputError(place, message);
+  throw OutputError(place, message);
+}
+
+void makeFolder(const fs::path& folder, std::string_view option) {
+  std::error_code reason;
+  fs::create_directories(folder, reason);
+  // Making one that is there is none, but one that is a file is not always told as a failure.
+  std::error_code ignored;
+  if (!reason && fs::is_directory(folder, ignored)) return;
+  if (reason && !isOfPath(reason)) throwNotWritten(folder.string(), reason);
+  throw InputError(std::string(option), "expected a folder that can be made, found " + folder.string() +
+                                            " (" + (reason ? reason.message() : "a file") + ")");
+}
 
 void requireWritable(const fs::path& file, std::string_view option) {
   const std::string place(option);
@@ -88,12 +114,12 @@ void requireWritable(const fs::path& file, std::string_view option) {
 
   // Permissions, read-only disks and forbidden names: only trying tells.
   const fs::path temporary = temporaryFor(resolved(file));
-  errno = 0;
-  const bool opened = std::ofstream(temporary, std::ios::binary | std::ios::app).is_open();
-  const std::string reason = std::strerror(errno);
-  if (!opened)
-    throw InputError(place,
-                     "expected a file that can be written, found " + file.string() + " (" + reason + ")");
+  const bool opened = OpenFile(temporary, O_WRONLY | O_APPEND | O_CREAT).isOpen();
+  const std::error_code reason(opened ? 0 : errno, std::generic_category());
+  if (reason && !isOfPath(reason)) throwNotWritten(file.string(), reason);
+  if (reason)
+    throw InputError(
+        place, "expected a file that can be written, found " + file.string() + " (" + reason.message() + ")");
   fs::remove(temporary, code);
 }
 
@@ -119,7 +145,7 @@ void writeFile(const fs::path& file, std::span<const std::string_view> pieces, O
   }
   std::error_code ignored;
   if (!direct) fs::remove(written, ignored);
-  throw InputError(file.string(), "could not be written: " + code.message());
+  throwNotWritten(file.string(), code);
 }
 
 void writeTextFile(const fs::path& file, std::string_view text) {

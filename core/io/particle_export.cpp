@@ -30,10 +30,7 @@ ParticleExport::ParticleExport(ExportOptions options, long firstFile)
     : options_(std::move(options)),
       listFile_(options_.folder / exportListName(options_.name, options_.format)),
       number_(firstFile) {
-  std::error_code code;
-  fs::create_directories(options_.folder, code);
-  if (code)
-    throw InputError(options_.folder.string(), "expected a folder that can be made (" + code.message() + ")");
+  makeFolder(options_.folder, "--export");
   if (firstFile > 0) readEarlierEntries(firstFile);
   thread_ = std::thread([this] { work(); });
 }

@@ -149,7 +149,7 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
 
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
-  visitor.number("time_step", solver.timeStep, Range::positive(1), {"s", "Time from one frame to the next."});
+  visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1), {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
                   {"1", "Parts that a frame is divided into, at least."});
   visitor.number("cfl", solver.cfl, Range::closed(0, 10),
@@ -167,7 +167,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
   visitor.number("tolerance", solver.tolerance, Range::halfOpen(0, 1),
                  {"1", "Largest mean density error that ends the iterations."});
   visitor.number(
-      "cfm_epsilon", solver.cfmEpsilon, Range::positive(1e6),
+      "cfm_epsilon", solver.cfmEpsilon, Range::closed(1e-9, 1e6),
       {"1", "Softening of lambda, over the resting lattice's sum of squared constraint gradients."});
   visitor.choice(
       "kernel", solver.kernel, kKernelNames,
@@ -184,7 +184,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                  {"",
                   "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
                   "paper's plain iteration."});
-  visitor.number("rest_density", solver.restDensity, Range::positive(1e6),
+  visitor.number("rest_density", solver.restDensity, Range::closed(1e-6, 1e6),
                  {"kg/m^3", "Density of the fluid at rest."});
 }
 
@@ -270,7 +270,7 @@ bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   visitor.text("description", scene.description, {"", "What the scene shows and what to look for."});
   visitor.number("duration", scene.duration, Range::positive(1e6),
                  {"s", "How long a run is unless told otherwise."});
-  visitor.number("particle_spacing", scene.particleSpacing, Range::positive(1e3),
+  visitor.number("particle_spacing", scene.particleSpacing, Range::closed(1e-7, 1e3),
                  {"m", "Distance of neighbouring particles at rest."});
   visitor.vector("gravity", scene.gravity, {"m/s^2", "Acceleration of all of the fluid."});
   describeFluid(visitor, scene);

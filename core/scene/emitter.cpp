@@ -15,6 +15,20 @@ namespace migiwa {
 
 namespace {
 
+/// Layers follow each other in the time that one takes to pass, which has to be one.
+constexpr Range kMouthSpeeds = Range::closed(1e-9, 1e4);
+
+/// The directions along and across a mouth.
+struct MouthFrame {
+  Vec3d x, y;
+};
+MouthFrame frameOf(const Emitter& emitter) {
+  const Vec3d ahead = emitter.direction.normalized();
+  const Vec3d along = emitter.xAxis - emitter.xAxis.dot(ahead) * ahead;
+  const Vec3d x = along.norm() > 0 ? Vec3d(along.normalized()) : ahead.unitOrthogonal();
+  return {x, ahead.cross(x)};
+}
+
 /// Places of a square lattice of unit cells within a disc, with a place or a corner of four cells at its
 /// centre: whichever of the two comes nearer to the disc's area.
 std::vector<std::array<double, 2>> discLattice(double radius) {
@@ -43,7 +57,7 @@ template <class Visitor>
 void Emitter::fields(Visitor& visitor, Visited<Visitor, Emitter>& self) {
   visitor.vector("center", self.center, {"m", "Of the mouth.", Presence::required});
   if (self.shape == MouthShape::disc) {
-    visitor.number("radius", self.radius, Range::positive(kLargestCoordinate),
+    visitor.number("radius", self.radius, Range::length(kLargestCoordinate),
                    {"m", "Of the mouth.", Presence::required});
   } else {
     visitor.pair("size", self.size, {"m", "Of the mouth, along x_axis and across.", Presence::required});
@@ -91,6 +105,11 @@ void Emitter::check(FieldVisitor& visitor, double spacing) {
     visitor.fault("", std::string("expected either speed or rate, greater than 0, found ") +
                           (speed > 0 ? "both" : "neither"));
     speed = 1;
+  } else if (visitor.sound({"speed", "rate", "radius", "size"}) && !kMouthSpeeds.contains(mouthSpeed())) {
+    std::ostringstream text;
+    text << "expected a speed at the mouth " << kMouthSpeeds.text() << " (unit: m/s), found " << mouthSpeed();
+    if (rate > 0) text << ", rate over the mouth's area of " << area() << " m^2; another of the two helps";
+    visitor.fault(rate > 0 ? "rate" : "speed", text.str());
   }
   if (visitor.sound({"start", "stop"}) && stop <= start)
     visitor.fault("stop", "expected a time after start, found an earlier one");
@@ -122,16 +141,26 @@ double Emitter::count(double spacing, double time) const {
 }
 
 Bounds Emitter::bounds() const {
+  // A mouth that is much longer than wide has as many places along it as this.
+  constexpr double kMostAlong = 1e6;
+  const double spacing = 0.25 * std::sqrt(area());
   Bounds bounds;
-  for (const Vec3d& place : mouthLayer(*this, 0.25 * std::sqrt(area())).places) bounds.include(place);
+  if (shape == MouthShape::disc) {
+    for (const Vec3d& place : mouthLayer(*this, spacing).places) bounds.include(place);
+    return bounds;
+  }
+  const MouthFrame frame = frameOf(*this);
+  std::array<double, 2> first{};
+  for (std::size_t k = 0; k < 2; ++k)
+    first[k] = 0.5 / std::clamp(std::round(size[k] / spacing), 1.0, kMostAlong) - 0.5;
+  for (const double u : {first[0], -first[0]})
+    for (const double v : {first[1], -first[1]})
+      bounds.include(center + u * size[0] * frame.x + v * size[1] * frame.y);
   return bounds;
 }
 
 MouthLayer mouthLayer(const Emitter& emitter, double spacing) {
-  const Vec3d ahead = emitter.direction.normalized();
-  const Vec3d along = emitter.xAxis - emitter.xAxis.dot(ahead) * ahead;
-  const Vec3d x = along.norm() > 0 ? Vec3d(along.normalized()) : ahead.unitOrthogonal();
-  const Vec3d y = ahead.cross(x);
+  const auto [x, y] = frameOf(emitter);
   MouthLayer layer;
   if (emitter.shape == MouthShape::disc) {
     // The lattice is drawn out or in by as much as its places differ from the area.
@@ -140,7 +169,7 @@ MouthLayer mouthLayer(const Emitter& emitter, double spacing) {
     for (const auto& [i, j] : places) layer.places.emplace_back(emitter.center + cell * (i * x + j * y));
   } else {
     const auto cells = [&](double length) { return std::lround(length / spacing); };
-    const long columns = cells(emitter.size[0]), rows = cells(emitter.size[1]);
+    const long columns = cells(emitter.size[0]), rows = columns > 0 ? cells(emitter.size[1]) : 0;
     for (long j = 0; j < rows; ++j) {
       for (long i = 0; i < columns; ++i) {
         const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(columns) - 0.5;

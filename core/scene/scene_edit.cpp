@@ -168,7 +168,7 @@ std::string startOf(Scene scene) {
   scene.boundary = plain.boundary;
   scene.effects.clear();
   scene.solver = plain.solver;
-  return sceneIdentity(scene).dump();
+  return sceneIdentity(scene).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace migiwa

@@ -11,6 +11,7 @@
 #include "core/scene/json_writer.h"
 #include "core/scene/overrides.h"
 #include "core/scene/particle_limit.h"
+#include "core/scene/run_limit.h"
 #include "core/scene/scene_files.h"
 
 namespace migiwa {
@@ -19,13 +20,16 @@ namespace {
 
 constexpr std::string_view kSpacing = "/particle_spacing";
 
-/// What takes the whole scene to see: too many particles for this machine, or too far away for a float's
-/// digits.
+/// What takes the whole scene to see: too many steps, too many particles for this machine, or too far away
+/// for a float's digits.
 void checkWhole(const Scene& scene, FaultList& faults) {
+  if (!faults.anyBelow("/duration") && !faults.anyBelow("/solver"))
+    if (const auto fault = tooShortStep(scene.solver, scene.duration))
+      faults.add("/solver/time_step", *fault);
   if (faults.anyBelow("/fluid") || faults.anyBelow("/emitters") || faults.anyBelow(kSpacing)) return;
   const double spacing = scene.particleSpacing;
-  if (const auto fault = tooManyParticles(particleCount(scene), spacing, availableMemory()))
-    faults.add(kSpacing, *fault);
+  const auto count = [&](double other) { return particleCount(scene, other, scene.duration); };
+  if (const auto fault = tooManyParticles(count, spacing, availableMemory())) faults.add(kSpacing, *fault);
 
   Bounds fluid;
   for (const auto& source : scene.fluid) fluid.include(source->bounds());

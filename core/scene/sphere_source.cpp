@@ -9,7 +9,7 @@ namespace migiwa {
 template <class Visitor>
 void SphereSource::fields(Visitor& visitor, Visited<Visitor, SphereSource>& self) {
   visitor.vector("center", self.center_, {"m", "Centre of the ball.", Presence::required});
-  visitor.number("radius", self.radius_, Range::positive(kLargestCoordinate),
+  visitor.number("radius", self.radius_, Range::length(kLargestCoordinate),
                  {"m", "Its radius.", Presence::required});
 }
 

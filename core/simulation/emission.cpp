@@ -1,10 +1,11 @@
 #include "core/simulation/emission.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string>
 
 #include "core/base/available_memory.h"
-#include "core/scene/particle_limit.h"
 
 namespace migiwa {
 
@@ -38,10 +39,14 @@ bool makeRoom(StepState& state, std::size_t size) {
 
 }  // namespace
 
-Emission::Emission(Scene& scene, const Boundary& boundary) : given_(scene.emitters.size()) {
+Emission::Emission(Scene& scene, const Boundary& boundary, double most)
+    : given_(scene.emitters.size()), most_(most) {
   const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
   for (std::size_t k = 0; k < scene.emitters.size(); ++k) {
     const Emitter& emitter = scene.emitters[k];
+    // Also of one that begins after the duration, whose particles the reader has not counted.
+    requireMemory(kBytesPerParticle * emitter.area() / std::pow(scene.particleSpacing, 2),
+                  "the particles of a layer", scene.file.string() + ":/emitters/" + std::to_string(k));
     MouthLayer layer = mouthLayer(emitter, scene.particleSpacing);
     const auto barred = std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
       return boundary.distance(place.cast<float>()) < margin;
@@ -80,6 +85,13 @@ void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
         statistics.note("emitter_limit", statistics.steps,
                         "/emitters/" + std::to_string(k) + " has given the " +
                             std::to_string(given.particles) + " particles that it may give");
+        break;
+      }
+      if (static_cast<double>(state.particles.size()) + static_cast<double>(layer) > most_) {
+        std::ostringstream detail;
+        detail << "/emitters/" << k << " gives nothing more: with another " << layer
+               << " particles there would be more than the " << most_ << " that a simulation may have";
+        statistics.note("particle_limit", statistics.steps, detail.str());
         break;
       }
       if (!makeRoom(state, state.particles.size() + mouth.layer.places.size())) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/scene/particle_limit.h"
 #include "core/scene/scene.h"
 #include "core/simulation/state_visitor.h"
 #include "core/simulation/statistics.h"
@@ -20,12 +21,14 @@ struct EmitterState {
 
 class Emission {
  public:
-  /// Keeps no reference to the scene. Warns of mouths within walls.
-  Emission(Scene& scene, const Boundary& boundary);
+  /// Keeps no reference to the scene. Warns of mouths within walls. Throws InputError where a layer has no
+  /// room in memory. `most`: particles that all of the simulation may have.
+  Emission(Scene& scene, const Boundary& boundary, double most = kLargestCount);
 
   bool empty() const { return mouths_.empty(); }
   /// Adds the layers that have left by `time` (s), where they are by then. Ids go on from the number of
-  /// particles. An emitter that reaches its limit is noted as trouble.
+  /// particles. An emitter that reaches its limit, or that of the simulation or its memory, gives nothing
+  /// more, and is noted as trouble.
   void emit(double time, StepState& state, RunStatistics& statistics);
   /// The largest speed (m/s) at a mouth that is open between `from` and `to` (s).
   double largestSpeed(double from, double to) const;
@@ -44,6 +47,7 @@ class Emission {
 
   std::vector<Mouth> mouths_;
   std::vector<EmitterState> given_;
+  double most_;
 };
 
 }  // namespace migiwa

@@ -340,14 +340,16 @@ void Simulation::advanceFrame() {
       if (speed * step > reach) step = reach / speed;
       step = std::min(step, state.effects.longestStep(state.step));
     }
-    long parts = static_cast<long>(std::ceil(left / step - 1e-6));
-    if (parts > kMostSubsteps - taken) {
+    // In doubles: a step that the CFL rule makes short enough has more parts than a whole number holds.
+    const double wanted = std::ceil(left / step - 1e-6), most = static_cast<double>(kMostSubsteps - taken);
+    double parts = std::max(wanted, 1.0);
+    if (!(wanted <= most)) {
       state.statistics.note("cfl_not_met", state.statistics.steps,
                             "the fastest particle would need more than " + std::to_string(kMostSubsteps) +
                                 " substeps a frame; a smaller time_step helps");
-      parts = std::max(1L, kMostSubsteps - taken);
+      parts = std::max(most, 1.0);
     }
-    const double dt = left / static_cast<double>(std::max(parts, 1L));
+    const double dt = left / parts;
     state.advanceSubstep(start, dt);
     if (!state.stepTaken) {
       // What is left is the state of the last good step, which may be within the frame.
@@ -369,7 +371,7 @@ void Simulation::advanceFrame() {
 }
 
 long Simulation::frameAt(double time) const {
-  return std::lround(time / state_->scene.solver.timeStep);
+  return std::lround(std::clamp(time / state_->scene.solver.timeStep, -0x1p62, 0x1p62));
 }
 long Simulation::frame() const {
   return state_->frame;

@@ -6,7 +6,10 @@
 namespace migiwa {
 
 void SpacingHistogram::add(float distance) {
-  const auto bin = static_cast<std::size_t>(std::lround(distance * static_cast<float>(kBins)));
+  // A neighbour is within the support radius; beyond it, all are as far.
+  constexpr float kFarthest = 1000;
+  const auto bin =
+      static_cast<std::size_t>(std::lround(std::fmin(distance, kFarthest) * static_cast<float>(kBins)));
   if (bin >= counts_.size()) counts_.resize(bin + 1, 0);
   ++counts_[bin];
 }

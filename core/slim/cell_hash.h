@@ -14,6 +14,13 @@ struct CellCoordinates {
   std::int32_t x, y, z;
 };
 
+/// The cell along one axis that a coordinate, in edges of cells, lies in; the last one for all that is
+/// farther than a whole number counts, and for what is no number.
+inline std::int32_t cellAlong(float place) {
+  constexpr float kLast = 1 << 30;
+  return static_cast<std::int32_t>(std::fmin(std::fmax(std::floor(place), -kLast), kLast));
+}
+
 /// Coordinates in one number; exact for |coordinate| < 2^20.
 inline std::uint64_t cellKey(const CellCoordinates& cell) {
   constexpr std::int64_t kHalf = std::int64_t{1} << 20;

@@ -16,9 +16,7 @@ constexpr double kPointsPerCell = 4;
 constexpr std::size_t kFewest = 64;  // points of the coarsest level
 
 CellCoordinates cellOf(const Vec3f& p, float inverseCell) {
-  return {static_cast<std::int32_t>(std::floor(p.x() * inverseCell)),
-          static_cast<std::int32_t>(std::floor(p.y() * inverseCell)),
-          static_cast<std::int32_t>(std::floor(p.z() * inverseCell))};
+  return {cellAlong(p.x() * inverseCell), cellAlong(p.y() * inverseCell), cellAlong(p.z() * inverseCell)};
 }
 
 }  // namespace

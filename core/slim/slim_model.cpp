@@ -72,19 +72,22 @@ void SlimModel::buildCells() {
   std::vector<Entry> entries;
   for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
     const SlimNode& node = nodes_[k];
-    const Eigen::Array3f from = ((node.centre.array() - node.radius) * inverseCell_).floor();
-    const Eigen::Array3f to = ((node.centre.array() + node.radius) * inverseCell_).floor();
-    for (float z = from.z(); z <= to.z(); ++z) {
-      for (float y = from.y(); y <= to.y(); ++y) {
-        for (float x = from.x(); x <= to.x(); ++x) {
-          const Eigen::Array3f corner(x, y, z);
+    // Whole numbers: far from the origin a float does not count one by one.
+    const auto cellsOf = [&](const Eigen::Array3f& p) {
+      const Eigen::Array3f place = p * inverseCell_;
+      return CellCoordinates{cellAlong(place.x()), cellAlong(place.y()), cellAlong(place.z())};
+    };
+    const CellCoordinates from = cellsOf(node.centre.array() - node.radius),
+                          to = cellsOf(node.centre.array() + node.radius);
+    for (std::int32_t z = from.z; z <= to.z; ++z) {
+      for (std::int32_t y = from.y; y <= to.y; ++y) {
+        for (std::int32_t x = from.x; x <= to.x; ++x) {
+          const Eigen::Array3f corner(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
           const Vec3f low = (corner * cell).matrix(), high = ((corner + 1) * cell).matrix();
           if ((node.centre.cwiseMax(low).cwiseMin(high) - node.centre).squaredNorm() >=
               node.radius * node.radius)
             continue;
-          entries.push_back({cellKey({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                                      static_cast<std::int32_t>(z)}),
-                             k});
+          entries.push_back({cellKey({x, y, z}), k});
         }
       }
     }
@@ -116,10 +119,8 @@ void SlimModel::buildCells() {
 
 template <int Degree>
 SlimModel::Value SlimModel::evaluateDegree(const Vec3f& p) const {
-  const CellHash::Range range =
-      cells_.find(cellKey({static_cast<std::int32_t>(std::floor(p.x() * inverseCell_)),
-                           static_cast<std::int32_t>(std::floor(p.y() * inverseCell_)),
-                           static_cast<std::int32_t>(std::floor(p.z() * inverseCell_))}));
+  const CellHash::Range range = cells_.find(cellKey(
+      {cellAlong(p.x() * inverseCell_), cellAlong(p.y() * inverseCell_), cellAlong(p.z() * inverseCell_)}));
   // f = sum w f_i / sum w, so grad f = (sum w grad f_i + sum (f_i - f) grad w) / sum w, with grad w along the
   // offsets from the centres.
   float weights = 0, values = 0;
@@ -188,6 +189,7 @@ void SlimModel::buildDistances(ThreadPool& pool) {
     for (std::size_t k = chunk * kAtATime; k < std::min(nodes_.size(), (chunk + 1) * kAtATime); ++k) {
       const SlimNode& node = nodes_[k];
       const float reach = kSampledReach * node.radius;
+      // No cell is smaller than a few thousandths of all that there is, see DistanceGrid::cellFor().
       const int steps = static_cast<int>(std::ceil(reach / (0.45F * cell)));
       const float step = reach / static_cast<float>(std::max(steps, 1));
       for (int i = -steps; i <= steps; ++i) {

@@ -17,7 +17,7 @@ struct Transform {
   }
   template <class Visitor>
   static void describe(Visitor& visitor, Visited<Visitor, Transform>& self) {
-    visitor.number("scale", self.scale, Range::positive(1e6),
+    visitor.number("scale", self.scale, Range::closed(1e-9, 1e6),
                    {"1", "Factor on all lengths of the file: metres per its unit."});
     visitor.object("rotate",
                    {"", "Turns it about the origin; a file whose z axis is up needs [1, 0, 0] and -90."},

@@ -1,6 +1,7 @@
 #include "core/study/plan.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/checksum.h"
 #include "core/base/state_hash.h"
@@ -40,8 +41,13 @@ std::string StudyAxis::label(const std::string& value) const {
 }
 
 std::size_t StudyPlan::size() const {
+  constexpr std::size_t kLargest = std::numeric_limits<std::size_t>::max();
   std::size_t count = 1;
-  for (const StudyAxis& axis : axes) count *= axis.values.size();
+  for (const StudyAxis& axis : axes) {
+    const std::size_t values = axis.values.size();
+    if (values > 0 && count > kLargest / values) return kLargest;
+    count *= values;
+  }
   return count;
 }
 
@@ -75,7 +81,7 @@ std::vector<Override> StudyPlan::overrides(std::size_t run) const {
 std::string runFingerprint(const Scene& scene, double until) {
   Json identity = sceneIdentity(scene);
   identity["until"] = until;
-  const std::string text = identity.dump();
+  const std::string text = identity.dump(-1, ' ', false, Json::error_handler_t::replace);
   return hexDigits(checksum(kEmptyChecksum, text.data(), text.size()));
 }
 

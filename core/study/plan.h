@@ -31,7 +31,7 @@ struct StudyPlan {
   std::vector<StudyAxis> axes;   ///< at least one, each with at least one value
   double until = 0;              ///< simulated time at the end of each run (s)
 
-  /// Runs are numbered from 1 to size().
+  /// Runs are numbered from 1 to size(); the largest number that it holds stands for more.
   std::size_t size() const;
   /// The values of a run, one for each axis. The last axis changes fastest.
   std::vector<std::string> values(std::size_t run) const;

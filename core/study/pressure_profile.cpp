@@ -22,6 +22,9 @@ void PressureProfile::sample(const Scene& scene, std::span<const Float4> positio
   ++samples_;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const double depth = std::max(level_ - tank->heightOf(positions[i].xyz().cast<double>()), 0.0);
+    // What has fallen out of the tank is in no layer of its water.
+    constexpr double kMostLayers = 1e6;
+    if (!(depth / a < kMostLayers)) continue;
     const auto layer = static_cast<std::size_t>(depth / a);
     if (layer >= sums_.size()) sums_.resize(layer + 1);
     sums_[layer].depth += depth;

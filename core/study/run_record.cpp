@@ -66,7 +66,8 @@ void writeRecord(const std::filesystem::path& file, const RunRecord& record) {
 }
 
 std::optional<RunRecord> readRecord(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
   try {
     const Json root = Json::parse(readTextFile(file, "the record of a study's run"));
     RunRecord record;

@@ -1,5 +1,6 @@
 // What every command that writes does where the disk is full, the folder is read-only, or it is killed on the
-// way: it says so and exits with 2, and what is there is whole.
+// way: it says so, and what is there is whole. It exits with 4 where the machine has no room, since nothing
+// that was given is wrong then, and with 2 where the path is one that nobody could write.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -94,7 +95,7 @@ TEST_F(DiskCommand, AFullDiskIsToldAndHoldsNoPartOfAFile) {
     SCOPED_TRACE(writing.what);
     Words left;
     const Outcome outcome = runOnSmallDisk(writing.kilobytes, writing.arguments, left);
-    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(outcome.code, 4) << outcome.err;
     EXPECT_NE(outcome.err.find("could not be written"), std::string::npos) << outcome.err;
     for (const std::string& file : left) EXPECT_EQ(file.find(".tmp"), std::string::npos) << file;
   }
@@ -103,7 +104,7 @@ TEST_F(DiskCommand, AFullDiskIsToldAndHoldsNoPartOfAFile) {
 TEST_F(DiskCommand, AFullDeviceIsToldForEveryFile) {
   for (const char* option : {"--report", "--save"}) {
     const Outcome outcome = run({"simulate", "drop.json", "--until", "0.02", option, "/dev/full"});
-    EXPECT_EQ(outcome.code, 2) << option;
+    EXPECT_EQ(outcome.code, 4) << option;
     EXPECT_EQ(outcome.err, "/dev/full: could not be written: No space left on device\n") << option;
   }
 }
@@ -113,7 +114,7 @@ TEST_F(DiskCommand, AFileLimitIsToldAndTheOldReportStays) {
   const std::string old = readAll(folder_ / "report.json");
   const Outcome outcome =
       run({"simulate", "drop.json", "--until", "0.04", "--report", "report.json"}, "ulimit -f 1");
-  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.code, 4);
   EXPECT_EQ(outcome.err, "report.json: could not be written: File too large\n");
   EXPECT_EQ(readAll(folder_ / "report.json"), old);
 }
@@ -146,11 +147,45 @@ TEST_F(DiskCommand, AFullDeviceBehindTheOutputIsTold) {
     for (const std::string& word : words) command += " " + shellQuoted(word);
     const int status =
         std::system((command + " >/dev/full 2>" + shellQuoted((base_ / "err").string())).c_str());
-    EXPECT_EQ(WEXITSTATUS(status), 2) << words[0];
+    EXPECT_EQ(WEXITSTATUS(status), 4) << words[0];
     EXPECT_NE(readAll(base_ / "err").find("standard output: could not be written to its end"),
               std::string::npos)
         << words[0];
   }
+}
+
+TEST_F(DiskCommand, ADiskWithoutRoomForAFolderOrAnEmptyFileIsFull) {
+  if (!mayMount()) GTEST_SKIP() << "no disk may be mounted here";
+  // As many names as there may be: not even an empty file has room.
+  const std::string fill = "i=0; while touch disk/$i 2>/dev/null; do i=$((i + 1)); done";
+  for (const Words& words :
+       {Words{"simulate", "drop.json", "--until", "0.02", "--report", "disk/report.json"},
+        Words{"simulate", "drop.json", "--until", "0.02", "--export", "disk/out", "--every", "0.01"},
+        Words{"study", "drop.json", "--vary", "/solver/max_iterations=2", "--until", "0.02", "--out",
+              "disk/out"},
+        Words{"render", "drop.json", "--times", "0", "--size", "320x180", "--out", "disk/out"},
+        Words{"gamma", "drop.json", "--map", "disk/out"}}) {
+    std::string command = "mount -t tmpfs -o nr_inodes=8 tmpfs disk || exit 99; " + fill + "; exec " +
+                          shellQuoted(MIGIWA_PROGRAM);
+    for (const std::string& word : words) command += " " + shellQuoted(word);
+    const int status =
+        std::system(("cd " + shellQuoted(folder_.string()) + " && unshare -rm sh -c " + shellQuoted(command) +
+                     " >/dev/null 2>" + shellQuoted((base_ / "err").string()))
+                        .c_str());
+    const std::string err = readAll(base_ / "err");
+    EXPECT_EQ(WEXITSTATUS(status), 4) << words[0] << ": " << err;
+    EXPECT_NE(err.find("could not be written: No space left on device"), std::string::npos) << err;
+  }
+}
+
+TEST_F(DiskCommand, AReaderThatIsGoneIsTold) {
+  const int status = std::system(("cd " + shellQuoted(folder_.string()) + " && { { sleep 0.2; " +
+                                  shellQuoted(MIGIWA_PROGRAM) + " schema 2>" +
+                                  shellQuoted((base_ / "err").string()) + "; echo $? >code; } | true; }")
+                                     .c_str());
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(readAll(folder_ / "code"), "4\n");
+  EXPECT_NE(readAll(base_ / "err").find("standard output: could not be written"), std::string::npos);
 }
 
 TEST_F(DiskCommand, AKilledExportHasWholeFiles) {

@@ -89,7 +89,7 @@ TEST_F(ExportCommand, FilesOfALongerExportAreMentioned) {
 
 TEST_F(ExportCommand, AFileLimitStopsTheRunAndLeavesWholeFiles) {
   const Outcome outcome = simulate({"--export", "a", "--every", "0.01", "--until", "100"}, "ulimit -f 1");
-  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.code, 4);
   EXPECT_EQ(outcome.err, "a/drop_000000.ply: could not be written: File too large\n");
   EXPECT_EQ(contents("a").size(), 0U);
   EXPECT_FALSE(fs::exists(folder_ / "report.json"));

@@ -210,7 +210,7 @@ TEST_F(ParticleFiles, AFullDiskEndsTheSequenceWithWholeFiles) {
   try {
     for (int k = 0; k < 20; ++k) exporter.add(frame());
     exporter.finish();
-  } catch (const InputError& error) {
+  } catch (const OutputError& error) {
     fault = error.what();
   }
   EXPECT_EQ(fault,

@@ -101,7 +101,7 @@ TEST_F(SaveCommand, AFileLimitIsToldAndTheOldSaveStays) {
   const std::string old = readAll(folder_ / "a.save");
   const Outcome outcome =
       run({"simulate", "drop.json", "--until", "0.1", "--save", "a.save"}, "ulimit -f 20");
-  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_EQ(outcome.err, "a.save: could not be written: File too large\n");
   EXPECT_EQ(readAll(folder_ / "a.save"), old);
   EXPECT_FALSE(fs::exists(folder_ / "a.save.tmp"));
@@ -109,7 +109,7 @@ TEST_F(SaveCommand, AFileLimitIsToldAndTheOldSaveStays) {
 
 TEST_F(SaveCommand, AFullDiskIsTold) {
   const Outcome outcome = run({"simulate", "drop.json", "--until", "0.05", "--save", "/dev/full"});
-  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.code, 4);
   EXPECT_EQ(outcome.err, "/dev/full: could not be written: No space left on device\n");
 }
 

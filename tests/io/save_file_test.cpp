@@ -417,7 +417,7 @@ TEST_F(SaveFile, AFullDiskLeavesTheOldSave) {
   try {
     saveAfter(scene, 3);
     ADD_FAILURE() << "nobody noticed that the disk is full";
-  } catch (const InputError& error) {
+  } catch (const OutputError& error) {
     EXPECT_EQ(error.what(), file_.string() + ": could not be written: No space left on device");
   }
   EXPECT_EQ(content(), old);

@@ -33,7 +33,7 @@ TEST(Schema, ReferenceIsInStep) {
 TEST(Schema, ReferenceHasEveryKindOfPlace) {
   const std::string text = sceneReference();
   for (const char* row :
-       {"| `particle_spacing` | number in (0, 1000] | m | 0.05 |",
+       {"| `particle_spacing` | number in [1e-07, 1000] | m | 0.05 |",
         "| `gravity` | 3 numbers | m/s^2 | [0, -9.81, 0] |", "### `/solver`",
         "| `camera/eye` | 3 numbers | m | required |", "`/fluid/N` with `\"shape\": \"box\"`",
         "| `viscosity/xsph` | number in [0, 1] | 1 | 0.05 |",

@@ -1,10 +1,13 @@
 // Emitters: what they give against their rate, and how it lies.
+#include "core/simulation/emission.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "core/boundary/boundary.h"
 #include "core/simulation/simulation.h"
 #include "tests/support/test_scenes.h"
 
@@ -113,6 +116,37 @@ TEST(Emission, RunsDryAtItsLimitAndSaysSo) {
   const auto& trouble = simulation.statistics().trouble;
   EXPECT_TRUE(std::any_of(trouble.begin(), trouble.end(),
                           [](const Trouble& t) { return t.kind == "emitter_limit"; }));
+}
+
+TEST(Emission, StopsBeforeThereAreMoreThanASimulationMayHave) {
+  Scene scene = emptyScene();
+  scene.emitters = {disc(0.1, {0, 1, 0}, 2), disc(0.1, {0, -1, 0}, 2)};
+  ThreadPool pool(1);
+  const Boundary none;
+  StepState state(pool, none);
+  RunStatistics statistics;
+  constexpr double kMost = 100;
+  Emission emission(scene, none, kMost);
+  for (int k = 0; k < 100; ++k) emission.emit(0.01 * k, state, statistics);
+  const auto layer = static_cast<double>(mouthLayer(scene.emitters[0], kSpacing).places.size());
+  EXPECT_LE(static_cast<double>(state.particles.size()), kMost);
+  EXPECT_GT(static_cast<double>(state.particles.size()) + layer, kMost);
+  ASSERT_FALSE(statistics.trouble.empty());
+  EXPECT_EQ(statistics.trouble[0].kind, "particle_limit");
+  EXPECT_NE(statistics.trouble[0].detail.find("more than the 100 "), std::string::npos);
+}
+
+TEST(Emission, BoundsOfALopsidedMouthHoldIt) {
+  for (const double width : {1e-6, 1e-3, 1.0})
+    for (const double height : {1e-6, 1e-3, 1.0}) {
+      const Bounds bounds = rectangle(width, height, {0, 0, 1}, 1).bounds();
+      ASSERT_FALSE(bounds.empty()) << width << " " << height;
+      // Of places within the mouth, which are the farther from its rim the fewer they are.
+      EXPECT_LE(bounds.size().norm(), std::hypot(width, height));
+      if (std::max(width, height) > 10 * std::min(width, height)) {
+        EXPECT_GT(bounds.size().norm(), 0.9 * std::max(width, height));
+      }
+    }
 }
 
 TEST(Emission, TheHashDoesNotDependOnThreads) {

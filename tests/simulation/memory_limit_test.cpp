@@ -13,7 +13,9 @@
 #include "core/boundary/gridded_surface.h"
 #include "core/boundary/handling.h"
 #include "core/boundary/sphere.h"
+#include "core/scene/mesh_source.h"
 #include "core/simulation/simulation.h"
+#include "tests/support/mesh_shapes.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
@@ -71,6 +73,31 @@ TEST_F(MemoryLimit, HoldsForParticles) {
   Scene scene = emptyScene();
   addFluid(scene, Vec3d::Zero(), Vec3d::Constant(40 * kSpacing));
   expectRefusal("test.json:/particle_spacing", "particles", [&] { const Simulation simulation(scene, 1); });
+}
+
+TEST_F(MemoryLimit, IsAskedBeforeAMeshIsFilled) {
+  Scene scene = emptyScene();
+  scene.fluid.push_back(std::make_shared<MeshSource>(
+      boxMesh(Vec3d::Zero(), {5, 0, 0}, {0, 5, 0}, {0, 0, 5})));  // a million particles
+  expectRefusal("test.json:/particle_spacing", "particles", [&] { const Simulation simulation(scene, 1); });
+}
+
+TEST_F(MemoryLimit, IsEnoughForANeedleWithAHugeBox) {
+  // Of the box's columns of cells alone, a number each would not have room.
+  const MeshSource needle(slantedNeedle(160, 0.12));
+  std::vector<Vec3d> centers;
+  needle.fill(kSpacing, centers);
+  EXPECT_GT(centers.size(), 10000U);
+}
+
+TEST_F(MemoryLimit, HoldsForALayerOfAnEmitterThatComesLater) {
+  Scene scene = emptyScene();
+  Emitter emitter;
+  emitter.radius = 150 * kSpacing, emitter.speed = 1, emitter.start = 100;
+  emitter.particles = 1000000;
+  scene.emitters = {emitter};
+  expectRefusal("test.json:/emitters/0", "the particles of a layer",
+                [&] { const Simulation simulation(scene, 1); });
 }
 
 TEST_F(MemoryLimit, HoldsForGridsOfGamma) {

@@ -1,6 +1,7 @@
-// A study of 40 runs comes out the same however it was carried out.
+// A study of 40 runs comes out the same however it was carried out, and its runs differ where what is varied
+// changes the state, and nowhere else.
 #include <algorithm>
-#include <numeric>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,13 @@ class StudyOfForty : public StudyProgramTest {
   void SetUp() override {
     ProgramTest::SetUp();
     std::ofstream(folder_ / "drop.json") << R"({ "format": 1, "particle_spacing": 0.1,
-      "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [0.2, 0.3, 0.2] } ],
+      "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [0.3, 0.4, 0.2], "velocity": [2, -4, 0] } ],
       "boundary": { "surfaces": [ { "shape": "box", "fluid": "inside", "min": [0, 0, 0],
-                                     "max": [0.3, 0.6, 0.2] } ] } })";
+                                     "max": [0.4, 0.6, 0.2] } ] } })";
   }
 
-  static Words study(const std::string& out, const Words& more = {}, const char* repeat = "1") {
+  static Words study(const std::string& out, const Words& more = {}, const char* repeat = "1",
+                     const char* threads = "1") {
     Words words{
         "study",     "drop.json",
         "--vary",    "/boundary/handling:/boundary/gamma/method=gamma:auto,gamma:mean,particles,spline,none",
@@ -30,13 +32,15 @@ class StudyOfForty : public StudyProgramTest {
         "--set",     "/solver/min_iterations=1",
         "--set",     "/solver/tolerance=0",
         "--until",   "0.06",
-        "--threads", "1",
+        "--threads", threads,
         "--quiet",   "--repeat",
         repeat,      "--out",
         out};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
+
+  static std::set<std::string> distinct(const Words& values) { return {values.begin(), values.end()}; }
 
   void carryOut(const std::string& out) const { expectDone(run(study(out))); }
 };
@@ -45,6 +49,8 @@ TEST_F(StudyOfForty, StoppedTwiceAndMergedFromFourPartsHasTheSameTable) {
   carryOut("whole");
   const std::string whole = table("whole");
   ASSERT_EQ(std::count(whole.begin(), whole.end(), '\n'), kRuns + 1);
+  // No run can take the place of another unnoticed.
+  ASSERT_EQ(distinct(columns("whole").at("state_hash")).size(), static_cast<std::size_t>(kRuns));
 
   EXPECT_TRUE(fs::exists(folder_ / "whole" / "over_max_iterations.png"));
   EXPECT_FALSE(fs::exists(folder_ / "whole" / "over_time_step.png")) << "two values show no order";
@@ -67,21 +73,17 @@ TEST_F(StudyOfForty, StoppedTwiceAndMergedFromFourPartsHasTheSameTable) {
   EXPECT_EQ(table("joined"), whole);
 }
 
-TEST_F(StudyOfForty, TwiceItRanksTheRunsAlikeAndTellsTheSpreadOfTimes) {
-  for (const char* out : {"first", "second"}) expectDone(run(study(out, {}, "2")));
+TEST_F(StudyOfForty, OnOneThreadAndOnTwoItHasTheSameTableAndTellsTheSpreadOfTimes) {
+  expectDone(run(study("first", {}, "2")));
+  expectDone(run(study("second", {}, "2", "2")));
+  EXPECT_EQ(table("first"), table("second"));
   const auto first = columns("first"), second = columns("second");
-  const auto ranks = [](const Words& values) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::stod(values[a]) < std::stod(values[b]);
-    });
-    return order;
-  };
+  EXPECT_EQ(distinct(first.at("threads")), std::set<std::string>{"1"});
+  EXPECT_EQ(distinct(second.at("threads")), std::set<std::string>{"2"});
   for (const char* measure : {"density_error_mean", "density_error_max", "gamma_error", "rms_speed"}) {
     ASSERT_EQ(first.at(measure).size(), static_cast<std::size_t>(kRuns)) << measure;
-    EXPECT_EQ(ranks(first.at(measure)), ranks(second.at(measure))) << measure;
-    EXPECT_NE(first.at(measure).front(), first.at(measure).back()) << measure << " tells nothing apart";
+    // Some settings may come out alike to the last digit that is written; most do not.
+    EXPECT_GT(distinct(first.at(measure)).size(), static_cast<std::size_t>(0.8 * kRuns)) << measure;
   }
   for (std::size_t k = 0; k < kRuns; ++k) {
     const double least = std::stod(first.at("wall_ms_per_s_min")[k]);
@@ -89,6 +91,28 @@ TEST_F(StudyOfForty, TwiceItRanksTheRunsAlikeAndTellsTheSpreadOfTimes) {
     EXPECT_GE(std::stod(first.at("wall_ms_per_s_max")[k]), least);
     EXPECT_EQ(first.at("repeats")[k], "2");
   }
+}
+
+TEST_F(StudyOfForty, RunsAreAlikeWhereWhatIsVariedChangesNothing) {
+  // The number of directions means something to one of the methods, that of samples to neither, and a colour
+  // to no state at all.
+  expectDone(run({"study", "drop.json", "--vary", "/boundary/gamma/method=mean,directions", "--vary",
+                  "/boundary/gamma/directions=8,16,32,64,128", "--vary", "/boundary/gamma/samples=100,1000",
+                  "--vary", "/view/color=density,gamma", "--until", "0.06", "--quiet", "--repeat", "1",
+                  "--out", "alike"}));
+  const auto found = columns("alike");
+  const Words& hashes = found.at("state_hash");
+  ASSERT_EQ(hashes.size(), static_cast<std::size_t>(kRuns));
+  std::map<std::string, std::set<std::string>> byMethod, byDirections;
+  for (std::size_t k = 0; k < hashes.size(); ++k) {
+    const std::string& method = found.at("/boundary/gamma/method")[k];
+    byMethod[method].insert(hashes[k]);
+    if (method == "directions") byDirections[found.at("/boundary/gamma/directions")[k]].insert(hashes[k]);
+  }
+  EXPECT_EQ(byMethod["mean"].size(), 1U);
+  EXPECT_EQ(byMethod["directions"].size(), 5U);
+  ASSERT_EQ(byDirections.size(), 5U);
+  for (const auto& [directions, states] : byDirections) EXPECT_EQ(states.size(), 1U) << directions;
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// Closed meshes put together in code.
+#pragma once
+
+#include "core/slim/triangle_mesh.h"
+
+namespace migiwa::testing {
+
+/// A box with one corner at `corner` and edges along three vectors that are right-handed.
+inline TriangleMesh boxMesh(const Vec3d& corner, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.vertices.emplace_back((corner + (k & 1) * a + (k >> 1 & 1) * b + (k >> 2 & 1) * c).cast<float>());
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// A square rod of the given length and width (m) from the origin along a diagonal that no axis is near.
+inline TriangleMesh slantedNeedle(double length, double width) {
+  const Vec3d along = Vec3d(1, 0.9, 1.1).normalized(), a = along.unitOrthogonal(), b = along.cross(a);
+  return boxMesh(-0.5 * width * (a + b), width * a, width * b, length * along);
+}
+
+}  // namespace migiwa::testing
