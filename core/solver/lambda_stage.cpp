@@ -77,7 +77,8 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
         hn::MulAdd(hn::Set(d, massRatio * Density::kValue), sums.w, hn::Set(d, massRatio * Kernel::value(0))),
         inverseGamma);
     if (added) density = hn::Add(density, hn::Sub(one, gamma));
-    const PairVector constraint = hn::Max(hn::Sub(density, one), zero);
+    // In this order what is not a number stays so.
+    const PairVector constraint = hn::Max(zero, hn::Sub(density, one));
     const Vectors wall = gatherAtWalls(state.wallSlot.data(), first, count, [&state](std::size_t i) {
       return state.wallSlots[state.wallSlot[i]].sample.pairGradient;
     });
