@@ -220,8 +220,6 @@ void SimulationThread::carryOutSave(std::unique_lock<std::mutex>& lock) {
     writeSave(save.file, *simulation_, none, save.overrides);
   } catch (const std::exception& error) {
     faults = texts(error);
-  } catch (const OutputError& error) {
-    faults = {error.what()};
   }
   const double time = simulation_->time();
   lock.lock();

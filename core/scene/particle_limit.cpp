@@ -19,11 +19,8 @@ std::string digits(double value, int significant) {
   return text;
 }
 
-/// Rounded up to two digits.
-double roundedUp(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::ceil(value / unit) * unit;
-}
+/// Quotients of decimal numbers miss whole ones by what a double cannot hold.
+constexpr double kRounding = 1e-10;
 
 /// A spacing (m) of two digits that makes at most so many particles; nothing where there is none below the
 /// largest that a scene may have.
@@ -32,7 +29,7 @@ std::optional<double> coarseEnough(const std::function<double(double)>& count, d
   // The count of a solid goes with the spacing to the power of -3, that of thin things with a lower one.
   double enough = 1.02 * spacing * std::cbrt(count(spacing) / most);
   while (enough <= kLargestSpacing) {
-    const double rounded = roundedUp(enough);
+    const double rounded = shownRoundedUp(enough);
     if (count(rounded) <= most) return rounded;
     enough = 1.05 * rounded;
   }
@@ -40,6 +37,16 @@ std::optional<double> coarseEnough(const std::function<double(double)>& count, d
 }
 
 }  // namespace
+
+double shownRoundedUp(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil((1 - kRounding) * value / unit) * unit;
+}
+
+double shownRoundedDown(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::floor((1 + kRounding) * value / unit) * unit;
+}
 
 double mostParticles(double memory) {
   return std::min(kLargestCount, std::floor(memory / kBytesPerParticle));

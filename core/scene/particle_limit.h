@@ -16,6 +16,10 @@ inline constexpr double kBytesPerParticle = 600;
 /// bytes, of 16 a particle, in 32 bits; one place is for the ghost.
 inline constexpr double kLargestCount = 268435455;
 
+/// A positive number for people, to two digits up or three down; no other digits than it needs.
+double shownRoundedUp(double value);
+double shownRoundedDown(double value);
+
 /// Particles that fit into `memory` (bytes).
 double mostParticles(double memory);
 

@@ -1,6 +1,5 @@
 #include "core/scene/run_limit.h"
 
-#include <cmath>
 #include <sstream>
 
 #include "core/base/available_memory.h"
@@ -18,17 +17,6 @@ bool tooMany(double steps) {
   return !(steps <= kMostSteps * (1 + kRounding));
 }
 
-/// To two digits, for people.
-double roundedUp(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return std::ceil((1 - 0.1 * kRounding) * value / unit) * unit;
-}
-
-double roundedDown(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
-  return std::floor((1 + 0.1 * kRounding) * value / unit) * unit;
-}
-
 std::string ofSubsteps(const SolverParameters& solver) {
   return solver.substeps > 1 ? " in " + std::to_string(solver.substeps) + " substeps each" : "";
 }
@@ -42,7 +30,7 @@ std::optional<double> latestEnd(const Scene& scene, double until, double most) {
     const double middle = 0.5 * (fits + beyond);
     (particleCount(scene, scene.particleSpacing, middle) > most ? beyond : fits) = middle;
   }
-  return fits > 0 ? roundedDown(fits) : 0;
+  return fits > 0 ? shownRoundedDown(fits) : 0;
 }
 
 }  // namespace
@@ -55,7 +43,7 @@ std::optional<std::string> tooShortStep(const SolverParameters& solver, double d
   const double steps = fewestSteps(solver, duration);
   if (!tooMany(steps)) return std::nullopt;
   std::ostringstream text;
-  text << "expected at least " << roundedUp(duration * solver.substeps / kMostSteps) << " s"
+  text << "expected at least " << shownRoundedUp(duration * solver.substeps / kMostSteps) << " s"
        << ofSubsteps(solver) << ", with which the " << duration << " s of duration take at most "
        << kMostSteps << " steps, found " << solver.timeStep << " s, which takes " << steps
        << "; a shorter duration takes fewer, too";
@@ -65,8 +53,9 @@ std::optional<std::string> tooShortStep(const SolverParameters& solver, double d
 std::optional<std::string> tooLateAnEnd(const Scene& scene, double until, double memory) {
   std::ostringstream text;
   if (const double steps = fewestSteps(scene.solver, until); tooMany(steps)) {
-    text << "expected at most " << roundedDown(kMostSteps * scene.solver.timeStep / scene.solver.substeps)
-         << " s, " << kMostSteps << " steps of " << scene.solver.timeStep << " s" << ofSubsteps(scene.solver)
+    text << "expected at most "
+         << shownRoundedDown(kMostSteps * scene.solver.timeStep / scene.solver.substeps) << " s, "
+         << kMostSteps << " steps of " << scene.solver.timeStep << " s" << ofSubsteps(scene.solver)
          << ", found " << until << " s, which takes " << steps << "; a longer time_step takes fewer";
     return text.str();
   }

@@ -1,7 +1,6 @@
 #include "core/simulation/emission.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -45,7 +44,7 @@ Emission::Emission(Scene& scene, const Boundary& boundary, double most)
   for (std::size_t k = 0; k < scene.emitters.size(); ++k) {
     const Emitter& emitter = scene.emitters[k];
     // Also of one that begins after the duration, whose particles the reader has not counted.
-    requireMemory(kBytesPerParticle * emitter.area() / std::pow(scene.particleSpacing, 2),
+    requireMemory(kBytesPerParticle * emitter.area() / (scene.particleSpacing * scene.particleSpacing),
                   "the particles of a layer", scene.file.string() + ":/emitters/" + std::to_string(k));
     MouthLayer layer = mouthLayer(emitter, scene.particleSpacing);
     const auto barred = std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
