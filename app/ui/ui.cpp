@@ -22,7 +22,7 @@ constexpr float kFontPixels = 15;
 constexpr float kPanelWidth = 21.4F;
 
 struct KeyPair {
-  ImGuiKey_ imgui;
+  ImGuiKey imgui;
   Key key;
 };
 constexpr std::array<KeyPair, 18> kKeys{{
@@ -46,8 +46,37 @@ constexpr std::array<KeyPair, 18> kKeys{{
     {ImGuiKey_Z, Key::z},
 }};
 
-void feed(ImGuiIO& io, const InputState& input) {
-  io.DeltaTime = static_cast<float>(input.seconds);
+#if IMGUI_VERSION_NUM >= 18900
+
+/// Newer versions of Dear ImGui are told keys and buttons as events and no longer read the arrays of older
+/// ones.
+void prepareInput(ImGuiIO& io) {
+  // Every frame has all of its input, as it has with arrays.
+  io.ConfigInputTrickleEventQueue = false;
+}
+
+void feedButtons(ImGuiIO& io, const InputState& input) {
+  if (input.mouseInside)
+    io.AddMousePosEvent(input.mouseX, input.mouseY);
+  else
+    io.AddMousePosEvent(-FLT_MAX, -FLT_MAX);
+  for (std::size_t i = 0; i < kMouseButtonCount; ++i)
+    io.AddMouseButtonEvent(static_cast<int>(i), input.buttons[i]);
+  io.AddMouseWheelEvent(0, input.wheel);
+  io.AddKeyEvent(ImGuiMod_Ctrl, input.control);
+  io.AddKeyEvent(ImGuiMod_Shift, input.shift);
+  io.AddKeyEvent(ImGuiMod_Alt, input.alt);
+  for (const KeyPair& pair : kKeys)
+    io.AddKeyEvent(pair.imgui, input.keys[static_cast<std::size_t>(pair.key)]);
+}
+
+#else
+
+void prepareInput(ImGuiIO& io) {
+  for (const KeyPair& pair : kKeys) io.KeyMap[pair.imgui] = static_cast<int>(pair.key);
+}
+
+void feedButtons(ImGuiIO& io, const InputState& input) {
   io.MousePos = input.mouseInside ? ImVec2(input.mouseX, input.mouseY) : ImVec2(-FLT_MAX, -FLT_MAX);
   for (std::size_t i = 0; i < kMouseButtonCount; ++i) io.MouseDown[i] = input.buttons[i];
   io.MouseWheel = input.wheel;
@@ -55,6 +84,13 @@ void feed(ImGuiIO& io, const InputState& input) {
   io.KeyShift = input.shift;
   io.KeyAlt = input.alt;
   for (std::size_t i = 0; i < kKeyCount; ++i) io.KeysDown[i] = input.keys[i];
+}
+
+#endif
+
+void feed(ImGuiIO& io, const InputState& input) {
+  io.DeltaTime = static_cast<float>(input.seconds);
+  feedButtons(io, input);
   for (const unsigned c : input.characters) io.AddInputCharacter(c);
 }
 
@@ -86,7 +122,7 @@ Ui::Ui(double scale) : state_(std::make_unique<State>()) {
   applyTheme(state_->pixels);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
-  for (const KeyPair& pair : kKeys) io.KeyMap[pair.imgui] = static_cast<int>(pair.key);
+  prepareInput(io);
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 

@@ -39,10 +39,12 @@ std::string shown(const Json& value) {
 }
 
 /// The value of a key, which must be there.
-const Json& at(const Json& object, const std::string& pointer, const char* key, const std::string& name,
-               const std::string& expected) {
+const Json& at(const Json& object, std::string_view pointer, const char* key, std::string_view name,
+               std::string_view expected) {
   const auto found = object.find(key);
-  if (found == object.end()) fail(name, pointer + "/" + key, "expected " + expected + ", found nothing");
+  if (found == object.end())
+    fail(std::string(name), std::string(pointer) + "/" + key,
+         "expected " + std::string(expected) + ", found nothing");
   return *found;
 }
 
