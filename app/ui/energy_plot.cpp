@@ -14,7 +14,7 @@
 namespace migiwa {
 namespace {
 
-struct Range {
+struct EnergyRange {
   double low = 0, high = 0;
   void include(double value) {
     if (!std::isfinite(value)) return;
@@ -37,7 +37,7 @@ void energyPlot(std::span<const EnergySample> samples, float height) {
   const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
 
   const double start = samples.front().source;
-  Range range;
+  EnergyRange range;
   for (const EnergySample& at : samples) {
     range.include(at.kinetic);
     range.include(at.kinetic + at.potential - start);
