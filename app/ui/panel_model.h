@@ -18,9 +18,11 @@ class StageHistory;
 
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
-  bool playing = false;
+  bool playing = false;     ///< or would, if nothing held it
   bool stopped = false;     ///< it stopped itself and cannot go on
   std::string trouble;      ///< why
+  std::string heldFor{};    ///< why no frame begins though it may play; empty: nothing holds it
+  std::string refused{};    ///< one line on the last wish, if it could not be carried out
   std::string stateNote{};  ///< one line on what became of the last wish to save or load the state
   std::vector<std::string> stateFaults{};  ///< why it was not done; empty when it was
   /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,

@@ -30,13 +30,6 @@ int offsetOfLine(const std::string& text, int line) {
 
 int onCaret(ImGuiInputTextCallbackData* data) {
   auto& editor = *static_cast<SceneEditor*>(data->UserData);
-  if (editor.replacement) {
-    const int caret = std::min(data->CursorPos, static_cast<int>(editor.replacement->size()));
-    data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, editor.replacement->c_str());
-    data->CursorPos = data->SelectionStart = data->SelectionEnd = caret;
-    editor.replacement.reset();
-  }
   if (editor.goTo > 0) {
     const std::string text(data->Buf, data->Buf + data->BufTextLen);
     data->CursorPos = data->SelectionStart = data->SelectionEnd = offsetOfLine(text, editor.goTo);
@@ -85,12 +78,14 @@ void textWithLines(SceneEditor& editor, float height, ImFont* mono) {
   const ImVec2 size{ImGui::GetContentRegionAvail().x, std::max(needed, ImGui::GetContentRegionAvail().y)};
   const int before = editor.caretLine;
   if (editor.wantsFocus) ImGui::SetKeyboardFocusHere();
+  ImGui::PushID(editor.generation);
   ImGui::PushStyleColor(ImGuiCol_FrameBg, IM_COL32_BLACK_TRANS);
   ImGui::InputTextMultiline("##text", &editor.text, size,
                             ImGuiInputTextFlags_CallbackAlways | ImGuiInputTextFlags_AllowTabInput, onCaret,
                             &editor);
   ImGui::PopStyleColor();
-  if (!ImGui::IsItemActive()) editor.replacement.reset();
+  ImGui::PopID();
+  editor.active = ImGui::IsItemActive();
   editor.wantsFocus = false;
   if (editor.caretLine != before) {
     const float y = padding + static_cast<float>(editor.caretLine - 1) * lineHeight;

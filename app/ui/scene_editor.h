@@ -2,8 +2,8 @@
 // carried out by whoever owns the scene's file.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace migiwa {
@@ -27,13 +27,16 @@ struct SceneEditor {
   int caretLine = 1;        ///< where the caret is
   bool wantsFocus = false;  ///< the text is to take the keyboard in the next frame
 
-  std::optional<std::string> replacement;  ///< for the widget, which has a copy of its own while it is edited
+  bool active = false;  ///< the text has the keyboard
+  int generation = 0;   ///< of the text: one that replaces another has nothing of that one's to undo
 
   bool edited() const { return text != known; }
   /// Another text, also while the caret is in it.
   void replaceText(std::string with) {
-    text = with;
-    replacement = std::move(with);
+    text = std::move(with);
+    ++generation;
+    // The widget is a new one, and goes on where the old one was.
+    if (active) wantsFocus = true, goTo = caretLine;
   }
 };
 

@@ -21,14 +21,21 @@ void listFaults(const std::string& title, const std::vector<std::string>& faults
   ImGui::PopStyleColor();
 }
 
+/// Greyed, and never pressed, while it is not enabled.
+bool button(const char* label, float width, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = ImGui::Button(label, {width, 0});
+  ImGui::EndDisabled();
+  return pressed;
+}
+
 void stateButtons(PanelModel& model) {
   const float width = buttonWidth(2);
-  ImGui::BeginDisabled(model.run.stopped);
-  if (ImGui::Button("Save state", {width, 0})) model.wishes.saveState = true;
-  ImGui::EndDisabled();
-  ImGui::SameLine();
-  if (ImGui::Button("Load state", {width, 0})) model.wishes.loadState = true;
   const RunStatus& run = model.run;
+  const bool held = !run.heldFor.empty();
+  if (button("Save state", width, !run.stopped && !held)) model.wishes.saveState = true;
+  ImGui::SameLine();
+  if (button("Load state", width, !held)) model.wishes.loadState = true;
   if (run.stateNote.empty()) return;
   if (run.stateFaults.empty()) return faintText(run.stateNote);
   listFaults(run.stateNote, run.stateFaults);
@@ -38,18 +45,19 @@ void stateButtons(PanelModel& model) {
 
 void simulationPanel(PanelModel& model) {
   const float width = buttonWidth(3);
-  ImGui::BeginDisabled(model.run.stopped);
-  if (ImGui::Button(model.run.playing ? "Pause" : "Play", {width, 0})) {
-    (model.run.playing ? model.wishes.pause : model.wishes.play) = true;
+  const RunStatus& run = model.run;
+  const bool held = !run.heldFor.empty();
+  // Pausing can always be done: what is held then does not go on.
+  if (button(run.playing ? "Pause" : "Play", width, !run.stopped && (run.playing || !held))) {
+    (run.playing ? model.wishes.pause : model.wishes.play) = true;
   }
   ImGui::SameLine();
-  if (ImGui::Button("Step", {width, 0})) model.wishes.step = true;
-  ImGui::EndDisabled();
+  if (button("Step", width, !run.stopped && !held)) model.wishes.step = true;
   ImGui::SameLine();
-  if (ImGui::Button("Reset", {width, 0})) model.wishes.reset = true;
+  if (button("Reset", width, !held)) model.wishes.reset = true;
 
   rowLabel("Time");
-  ImGui::TextUnformatted(formatNumber("%.3f s", model.frame.time).c_str());
+  ImGui::TextUnformatted((formatNumber("%.3f s", model.frame.time) + (held ? ", waits" : "")).c_str());
   if (model.run.stopped) {
     ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
     ImGui::TextWrapped("Stopped: %s", model.run.trouble.c_str());
@@ -59,6 +67,10 @@ void simulationPanel(PanelModel& model) {
     listFaults("Settings not taken over, those of before stay:", model.run.settingsFaults);
   // As with the scene's text: only where there is a file beside which the state can lie.
   if (model.editor != nullptr) stateButtons(model);
+  if (run.refused.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::TextWrapped("%s", run.refused.c_str());
+  ImGui::PopStyleColor();
 }
 
 }  // namespace migiwa

@@ -37,7 +37,7 @@ void whatIfPanel(PanelModel& model) {
   if (ImGui::Button(whatIf.points.empty() ? "Measure" : "Try", {width, 0})) whatIf.ask = true;
   ImGui::EndDisabled();
   ImGui::SameLine();
-  ImGui::BeginDisabled(whatIf.points.empty());
+  ImGui::BeginDisabled(whatIf.points.empty() || whatIf.busy);
   if (ImGui::Button("Clear", {width, 0})) whatIf.clear = true;
   ImGui::EndDisabled();
   faintText(!whatIf.note.empty() ? whatIf.note : "The state of now, five frames on, on a copy");

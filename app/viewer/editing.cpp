@@ -2,26 +2,35 @@
 
 #include <utility>
 
-#include "core/scene/scene_edit.h"
-
 namespace migiwa {
 namespace {
 
 /// Messages say the place again where it is not a line of the text.
-void listFaults(const std::vector<Fault>& faults, const SceneSession& session, SceneEditor& editor,
-                const std::string& text) {
+void listFaults(const std::vector<TextFault>& faults, const SceneSession& session, SceneEditor& editor) {
   editor.faults.clear();
-  for (const Fault& fault : faults) {
-    const int line = lineOfFault(fault, text, session.file());
-    const std::string own = session.file().string() + ":";
+  const std::string own = session.file().string() + ":";
+  for (const TextFault& fault : faults) {
     std::string message = fault.text();
-    if (line > 0 && message.starts_with(own)) message.erase(0, own.size());
-    editor.faults.push_back({line, std::move(message)});
+    if (fault.line > 0 && message.starts_with(own)) message.erase(0, own.size());
+    editor.faults.push_back({fault.line, std::move(message)});
   }
 }
 
 std::string counted(std::size_t faults) {
   return faults == 1 ? "1 fault" : std::to_string(faults) + " faults";
+}
+
+/// What the file holds now. A text that was changed since stays.
+void takeFileText(const std::string& text, bool edited, SceneEditor& editor) {
+  editor.known = text;
+  if (!edited) editor.replaceText(text);
+}
+
+/// What was typed since the wish stays.
+void takeSaved(const SaveWish& saved, const SceneSession& session, SceneEditor& editor) {
+  takeFileText(session.fileText(), editor.text != saved.text, editor);
+  editor.fileName = session.file().filename().string();
+  if (editor.saveName == saved.name) editor.saveName = editor.fileName;
 }
 
 }  // namespace
@@ -34,13 +43,16 @@ SceneEditor makeEditor(const SceneSession& session) {
 }
 
 void tellEditor(const SceneChange& change, const SceneSession& session, SceneEditor& editor) {
-  if (change.fromFile) {
-    const bool edited = editor.edited();
-    editor.known = session.fileText();
-    if (!edited) editor.replaceText(editor.known);
+  if (change.saved) takeSaved(*change.saved, session, editor);
+  if (change.fromFile() && change.fileText) takeFileText(*change.fileText, editor.edited(), editor);
+  listFaults(change.faults, session, editor);
+  if (change.source == SceneChange::Source::save && !change.saved) {
+    editor.note = "not saved: " + counted(change.faults.size());
+    return;
   }
-  listFaults(change.faults, session, editor, change.fromFile ? editor.known : editor.text);
-  const std::string source = change.fromFile ? editor.fileName + " has changed: " : "";
+  std::string source;
+  if (change.fromFile()) source = editor.fileName + " has changed: ";
+  if (change.saved) source = "saved as " + session.file().string() + ", ";
   if (!change.faults.empty()) {
     editor.note = source + counted(change.faults.size()) + ", the scene before it goes on";
   } else {
@@ -49,27 +61,15 @@ void tellEditor(const SceneChange& change, const SceneSession& session, SceneEdi
 }
 
 void carryOut(SceneEditor& editor, SceneSession& session, const Settings& settings, const ViewState& view) {
-  if (std::exchange(editor.apply, false)) {
-    editor.note = "reading ...";
-    session.apply(editor.text);
-  }
-  if (std::exchange(editor.revert, false)) {
-    editor.known = session.fileText();
-    editor.replaceText(editor.known);
+  const bool revert = std::exchange(editor.revert, false);
+  if (revert) editor.replaceText(editor.known);
+  if (std::exchange(editor.apply, false) || revert) {
     editor.note = "reading ...";
     session.apply(editor.text);
   }
   if (std::exchange(editor.save, false)) {
-    try {
-      editor.known = session.saveAs(editor.saveName, editor.text, settings, view);
-      editor.replaceText(editor.known);
-      editor.fileName = editor.saveName = session.file().filename().string();
-      editor.faults.clear();
-      editor.note = "saved as " + session.file().string();
-    } catch (const InputError& error) {
-      listFaults(error.faults(), session, editor, editor.text);
-      editor.note = "not saved: " + counted(error.faults().size());
-    }
+    editor.note = "saving ...";
+    session.saveAs({editor.saveName, editor.text, settings, view});
   }
 }
 
@@ -78,13 +78,14 @@ void keepState(const Wishes& wishes, const SceneSession& session, SimulationThre
   if (wishes.loadState) simulation.loadState(session.stateFile());
 }
 
-void takeOver(SceneChange& change, Viewer& viewer, std::unique_ptr<SimulationThread>& simulation) {
+void takeOver(SceneChange& change, SceneSession& session, Viewer& viewer,
+              std::unique_ptr<SimulationThread>& simulation) {
   if (!change.simulation) {
     viewer.replaceScene(*change.scene, std::nullopt);
     return simulation->apply(viewer.settings());
   }
   const bool playing = simulation->status().playing;
-  simulation = std::move(change.simulation);
+  session.retire(std::exchange(simulation, std::move(change.simulation)));
   viewer.replaceScene(simulation->scene(), simulation->walls());
   if (playing) simulation->play();
 }

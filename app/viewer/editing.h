@@ -16,14 +16,15 @@ SceneEditor makeEditor(const SceneSession& session);
 /// happens to the file.
 void tellEditor(const SceneChange& change, const SceneSession& session, SceneEditor& editor);
 
-/// Carries out what the editor asks for.
+/// Hands what the editor asks for to the session, which carries it out in the background.
 void carryOut(SceneEditor& editor, SceneSession& session, const Settings& settings, const ViewState& view);
 
 /// Saves the simulation's state beside the scene's file, or goes on from it.
 void keepState(const Wishes& wishes, const SceneSession& session, SimulationThread& simulation);
 
 /// Shows the valid scene of a change: with its new simulation, which plays if the old one did, or by handing
-/// its parameters to the one that runs.
-void takeOver(SceneChange& change, Viewer& viewer, std::unique_ptr<SimulationThread>& simulation);
+/// its parameters to the one that runs. The old simulation ends in the session's background.
+void takeOver(SceneChange& change, SceneSession& session, Viewer& viewer,
+              std::unique_ptr<SimulationThread>& simulation);
 
 }  // namespace migiwa

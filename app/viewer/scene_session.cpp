@@ -1,8 +1,7 @@
 #include "app/viewer/scene_session.h"
 
+#include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "core/io/output_file.h"
@@ -21,102 +20,202 @@ Files joined(Files files, const Files& more) {
   return files;
 }
 
+/// Empty if it cannot be read.
+std::string textIn(const std::filesystem::path& file) {
+  try {
+    return readTextFile(file, "a scene file");
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+/// Runs what may throw, and says what was thrown, with places in `text`.
+template <class Action>
+std::vector<TextFault> faultsOf(const std::filesystem::path& file, const std::string& text,
+                                const Action& action) {
+  std::vector<Fault> thrown;
+  try {
+    action();
+  } catch (const InputError& error) {
+    thrown = error.faults();
+  } catch (const std::exception& error) {
+    thrown = {{file.string(), error.what()}};
+  }
+  std::vector<TextFault> faults;
+  for (Fault& fault : thrown) {
+    const int line = lineOfFault(fault, text, file);
+    faults.push_back({std::move(fault), line});
+  }
+  return faults;
+}
+
 }  // namespace
 
 SceneSession::SceneSession(const Scene& scene, SessionOptions options)
     : file_(scene.file),
-      options_(std::move(options)),
-      start_(startOf(scene)),
-      watch_(joined(filesOfScene(scene.file), filesNamedBy(scene))) {}
+      overrides_(options.overrides),
+      fileText_(textIn(scene.file)),
+      reader_{scene.file, std::move(options), startOf(scene),
+              SceneWatch(joined(filesOfScene(scene.file), filesNamedBy(scene)))},
+      thread_([this] { work(); }) {}
 
-void SceneSession::begin(std::optional<std::string> text) {
-  if (reading_.valid()) {
-    next_.emplace(std::move(text));
-    return;
+SceneSession::~SceneSession() {
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+    std::erase_if(wishes_, [](const Wish& wish) { return !wish.save; });
   }
-  // Copies: the session may go on while the scene is read.
-  reading_ = std::async(std::launch::async, [file = file_, options = options_, start = start_,
-                                             text = std::move(text)]() mutable {
-    Reading reading;
-    reading.change.fromFile = !text;
-    reading.files = filesOfScene(file);
-    Files named;
-    try {
-      Scene scene =
-          parseScene(text ? *text : readTextFile(file, "a scene file"), file, options.overrides, named);
-      reading.start = startOf(scene);
-      if (reading.start != start)
-        reading.change.simulation = std::make_unique<SimulationThread>(scene, options.threads, options.pace);
-      reading.change.scene = std::move(scene);
-    } catch (const InputError& error) {
-      reading.change.faults = error.faults();
-    } catch (const std::exception& error) {
-      reading.change.faults = {{file.string(), error.what()}};
-    }
-    reading.files = joined(std::move(reading.files), named);
-    return reading;
-  });
+  wake_.notify_one();
+  thread_.join();
 }
 
 std::optional<SceneChange> SceneSession::poll() {
-  if (watch_.poll()) begin(std::nullopt);
-  if (!reading_.valid() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return std::nullopt;
-  Reading reading = reading_.get();
-  if (reading.change.scene) start_ = reading.start;
-  watch_.follow(std::move(reading.files));
-  if (next_) begin(*std::exchange(next_, std::nullopt));
-  return std::move(reading.change);
+  std::erase_if(retiring_, [](const std::future<void>& done) {
+    return done.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  std::unique_lock lock(mutex_);
+  look_ = true;
+  wake_.notify_one();
+  if (answers_.empty()) return std::nullopt;
+  Answer answer = std::move(answers_.front());
+  answers_.pop_front();
+  lock.unlock();
+  file_ = std::move(answer.file);
+  overrides_ = std::move(answer.overrides);
+  if (answer.change.fileText) fileText_ = *answer.change.fileText;
+  return std::move(answer.change);
+}
+
+void SceneSession::ask(Wish wish) {
+  const std::lock_guard lock(mutex_);
+  // A text that was not yet begun is out of date; so is a look at the same files.
+  std::erase_if(wishes_, [&](const Wish& known) { return !known.save && known.source == wish.source; });
+  wishes_.push_back(std::move(wish));
+  wake_.notify_one();
 }
 
 void SceneSession::apply(std::string text) {
-  begin(std::move(text));
+  ask({SceneChange::Source::text, std::move(text), std::nullopt});
+}
+
+void SceneSession::saveAs(SaveWish wish) {
+  ask({SceneChange::Source::save, {}, std::move(wish)});
+}
+
+void SceneSession::retire(std::unique_ptr<SimulationThread> simulation) {
+  retiring_.push_back(
+      std::async(std::launch::async, [old = std::move(simulation)]() mutable { old.reset(); }));
 }
 
 void SceneSession::wait() {
-  if (reading_.valid()) reading_.wait();
-}
-
-std::string SceneSession::saveAs(const std::string& name, const std::string& text, const Settings& settings,
-                                 const ViewState& view) {
-  std::filesystem::path file(name);
-  if (file.empty() || file.has_parent_path())
-    throw InputError(
-        "Save as", "expected a file name without a folder (what the scene names is relative to " +
-                       std::filesystem::absolute(file_).parent_path().string() + "), found \"" + name + "\"");
-  if (file.extension() != ".json") file += ".json";
-  file = file_.parent_path() / file;
-
-  Scene now = parseScene(text, file_, options_.overrides);
-  now.solver = settings.solver;
-  now.boundary = settings.boundary;
-  now.effects = settings.effects;
-  now.view.camera = view.camera;
-  now.view.clip = view.clip;
-  if (now.view.color != view.color) now.view.hasColorRange = false;
-  now.view.color = view.color;
-  std::string written = sceneTextWith(text, file_, now);
-  try {
-    writeTextFile(file, written);
-  } catch (const OutputError& error) {
-    // The editor lists faults; to it this is one.
-    throw InputError(file.string(), error.what());
-  }
-  file_ = file;
-  options_.overrides.clear();  // they are in the text now
-  watch_.setFiles(filesOfScene(file_));
-  apply(written);
-  return written;
+  std::unique_lock lock(mutex_);
+  idle_.wait(lock, [this] { return wishes_.empty() && !look_ && !busy_; });
 }
 
 std::filesystem::path SceneSession::stateFile() const {
   return std::filesystem::path(file_).replace_extension(".save");
 }
 
-std::string SceneSession::fileText() const {
-  std::ostringstream text;
-  text << std::ifstream(file_, std::ios::binary).rdbuf();
-  return text.str();
+void SceneSession::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [this] { return quit_ || look_ || !wishes_.empty(); });
+    if (quit_ && wishes_.empty()) return;
+    busy_ = true;
+    if (!wishes_.empty()) {
+      Wish wish = std::move(wishes_.front());
+      wishes_.pop_front();
+      const bool last = quit_;
+      lock.unlock();
+      Answer answer = carryOut(std::move(wish), last);
+      lock.lock();
+      answers_.push_back(std::move(answer));
+    } else {
+      look_ = false;
+      lock.unlock();
+      const bool changed = look();
+      lock.lock();
+      if (changed && !quit_) wishes_.push_back({});
+    }
+    busy_ = false;
+    idle_.notify_all();
+  }
+}
+
+/// What cannot be looked at has not changed.
+bool SceneSession::look() {
+  try {
+    return reader_.watch.poll();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+SceneSession::Answer SceneSession::carryOut(Wish wish, bool last) {
+  Answer answer;
+  SceneChange& change = answer.change;
+  change.source = wish.source;
+  std::string text = std::move(wish.text);
+  if (wish.save) {
+    change.faults = faultsOf(reader_.file, wish.save->text, [&] {
+      text = write(*wish.save);
+      change.fileText = text;
+      change.saved = std::move(wish.save);
+    });
+  } else if (change.fromFile()) {
+    change.faults =
+        faultsOf(reader_.file, {}, [&] { text = readTextFile(reader_.file, "a scene file"); });
+    change.fileText = text;
+  }
+  if (change.faults.empty() && !last) {
+    Files named;
+    change.faults = faultsOf(reader_.file, text, [&] { read(text, change, named); });
+    faultsOf(reader_.file, text,
+             [&] { reader_.watch.follow(joined(filesOfScene(reader_.file), named)); });
+  }
+  answer.file = reader_.file;
+  answer.overrides = reader_.options.overrides;
+  return answer;
+}
+
+void SceneSession::read(std::string text, SceneChange& change, Files& named) {
+  Scene scene = parseScene(text, reader_.file, reader_.options.overrides, named);
+  std::string start = startOf(scene);
+  if (start != reader_.start)
+    change.simulation =
+        std::make_unique<SimulationThread>(scene, reader_.options.threads, reader_.options.pace);
+  reader_.start = std::move(start);
+  change.scene = std::move(scene);
+}
+
+std::string SceneSession::write(const SaveWish& wish) {
+  std::filesystem::path file(wish.name);
+  if (file.empty() || file.has_parent_path())
+    throw InputError("Save as",
+                     "expected a file name without a folder (what the scene names is relative to " +
+                         std::filesystem::absolute(reader_.file).parent_path().string() + "), found \"" +
+                         wish.name + "\"");
+  if (file.extension() != ".json") file += ".json";
+  file = reader_.file.parent_path() / file;
+
+  Scene now = parseScene(wish.text, reader_.file, reader_.options.overrides);
+  now.solver = wish.settings.solver;
+  now.boundary = wish.settings.boundary;
+  now.effects = wish.settings.effects;
+  now.view.camera = wish.view.camera;
+  now.view.clip = wish.view.clip;
+  if (now.view.color != wish.view.color) now.view.hasColorRange = false;
+  now.view.color = wish.view.color;
+  std::string written = sceneTextWith(wish.text, reader_.file, now);
+  try {
+    writeTextFile(file, written);
+  } catch (const std::runtime_error& error) {
+    throw InputError(file.string(), error.what());
+  }
+  reader_.file = file;
+  reader_.options.overrides.clear();  // they are in the text now
+  reader_.watch.setFiles(filesOfScene(reader_.file));
+  return written;
 }
 
 }  // namespace migiwa

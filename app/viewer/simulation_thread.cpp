@@ -53,19 +53,35 @@ SimulationThread::~SimulationThread() {
   thread_.join();
 }
 
+/// Whether a wish cannot be carried out now, which the status then says.
+bool SimulationThread::refuses(const char* wish, bool needsGoodState) {
+  const bool held = !status_.heldFor.empty();
+  const bool refused = held || (needsGoodState && status_.stopped);
+  status_.refused.clear();
+  if (refused) status_.refused = std::string(wish) + " refused: " + (held ? status_.heldFor : "it has stopped");
+  return refused;
+}
+
+bool SimulationThread::mayAdvance() const {
+  return status_.heldFor.empty() && !status_.stopped && (status_.playing || steps_ > 0);
+}
+
 void SimulationThread::play() {
   const std::lock_guard lock(mutex_);
-  status_.playing = !status_.stopped;
+  if (refuses("Play", true)) return;
+  status_.playing = true;
   wake_.notify_one();
 }
 
 void SimulationThread::pause() {
   const std::lock_guard lock(mutex_);
   status_.playing = false;
+  status_.refused.clear();
 }
 
 void SimulationThread::step() {
   const std::lock_guard lock(mutex_);
+  if (refuses("Step", true)) return;
   status_.playing = false;
   ++steps_;
   wake_.notify_one();
@@ -73,6 +89,7 @@ void SimulationThread::step() {
 
 void SimulationThread::reset() {
   const std::lock_guard lock(mutex_);
+  if (refuses("Reset", false)) return;
   reset_ = true;
   steps_ = 0;
   wake_.notify_one();
@@ -96,14 +113,28 @@ void SimulationThread::watchPressure(bool on) {
 
 void SimulationThread::saveState(std::filesystem::path file, std::vector<Override> overrides) {
   const std::lock_guard lock(mutex_);
+  if (refuses("Save state", false)) return;
   save_ = {std::move(file), std::move(overrides)};
   wake_.notify_one();
 }
 
 void SimulationThread::loadState(std::filesystem::path file) {
   const std::lock_guard lock(mutex_);
+  if (refuses("Load state", false)) return;
   load_ = std::move(file);
   steps_ = 0;
+  wake_.notify_one();
+}
+
+void SimulationThread::hold(std::string why) {
+  const std::lock_guard lock(mutex_);
+  status_.heldFor = std::move(why);
+}
+
+void SimulationThread::release() {
+  const std::lock_guard lock(mutex_);
+  status_.heldFor.clear();
+  status_.refused.clear();
   wake_.notify_one();
 }
 
@@ -132,13 +163,18 @@ void SimulationThread::work() {
   while (waitForWork(lock)) {
     try {
       carryOutWishes(lock);
-      if (status_.stopped || (!status_.playing && steps_ == 0)) continue;
+      if (!mayAdvance()) continue;
       if (steps_ > 0) --steps_;
       advance(lock);
     } catch (const std::exception& error) {
       if (!lock.owns_lock()) lock.lock();
       stop(error.what());
     }
+  }
+  try {
+    if (save_) carryOutSave(lock);
+  } catch (const std::exception&) {
+    // Nobody is left to tell; an older file stays.
   }
 }
 
@@ -147,10 +183,10 @@ void SimulationThread::work() {
 bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   const auto asked = [this] {
     return quit_ || reset_ || settings_ || save_ || load_ || !captures_.empty() ||
-           (steps_ > 0 && !status_.stopped);
+           (steps_ > 0 && mayAdvance());
   };
   while (!asked()) {
-    if (!status_.playing) {
+    if (!mayAdvance()) {
       wake_.wait(lock);
     } else if (pace_ == Pace::unlimited || Clock::now() >= due_) {
       break;

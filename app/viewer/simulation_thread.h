@@ -26,9 +26,13 @@ class SimulationThread {
  public:
   /// Fills the scene on the calling thread; `threads` as for Simulation.
   SimulationThread(const Scene& scene, int threads, Pace pace);
+  /// Waits for the frame that is being computed; a state that is still to be saved is saved.
   ~SimulationThread();
   SimulationThread(const SimulationThread&) = delete;
   SimulationThread& operator=(const SimulationThread&) = delete;
+
+  // What cannot be done now is refused, and the status says so: all but pausing, settings and pressures while
+  // the simulation is held, and playing and stepping once it has stopped itself.
 
   void play();
   void pause();
@@ -52,6 +56,12 @@ class SimulationThread {
   /// Goes on from a save of this scene with the settings of now; plays on if it did.
   void loadState(std::filesystem::path file);
 
+  /// No frame begins until release(), whether it plays or not. `why`: who holds it and what for, such as
+  /// "\"What if\" measures".
+  void hold(std::string why);
+  /// Goes on playing if it did and was not paused since.
+  void release();
+
   /// The state between two frames, to go on from elsewhere. Whoever waits for it waits for the frame that is
   /// being computed, at most; std::future_error where the simulation ends first.
   std::future<StateImage> capture();
@@ -74,6 +84,8 @@ class SimulationThread {
   void carryOutSave(std::unique_lock<std::mutex>& lock);
   void carryOutLoad(std::unique_lock<std::mutex>& lock);
   // With the lock held.
+  bool mayAdvance() const;
+  bool refuses(const char* wish, bool needsGoodState);
   void begin();
   void stop(std::string why);
   void advance(std::unique_lock<std::mutex>& lock);

@@ -29,8 +29,8 @@ WhatIfPoint pointOf(const Settings& settings, const WhatIfAnswer& answer) {
 }  // namespace
 
 void WhatIfSession::begin(WhatIfModel& model, SimulationThread& simulation, const Settings& now) {
-  plays_ = simulation.status().playing;
-  simulation.pause();
+  simulation.hold("\"What if\" measures");
+  holds_ = true;
   std::vector<Settings> settings;
   if (model.points.empty()) settings.push_back(now);
   if (!model.points.empty() || !model.follows) settings.push_back(model.asked);
@@ -60,7 +60,7 @@ void WhatIfSession::begin(WhatIfModel& model, SimulationThread& simulation, cons
 }
 
 bool WhatIfSession::poll(WhatIfModel& model, SimulationThread& simulation, const Settings& now) {
-  if (std::exchange(model.clear, false)) {
+  if (std::exchange(model.clear, false) && !asking_.valid()) {
     model.points.clear();
     model.follows = true;
     model.note.clear();
@@ -74,7 +74,7 @@ bool WhatIfSession::poll(WhatIfModel& model, SimulationThread& simulation, const
     return false;
   Outcome outcome = asking_.get();
   model.busy = false;
-  if (plays_) simulation.play();
+  if (std::exchange(holds_, false)) simulation.release();
   if (std::exchange(dropped_, false)) return true;
   copy_ = std::move(outcome.copy);
   moment_ = std::move(outcome.moment);
@@ -84,7 +84,8 @@ bool WhatIfSession::poll(WhatIfModel& model, SimulationThread& simulation, const
   return true;
 }
 
-void WhatIfSession::forget(WhatIfModel& model) {
+void WhatIfSession::forget(WhatIfModel& model, SimulationThread& simulation) {
+  if (std::exchange(holds_, false)) simulation.release();
   model.points.clear();
   model.note.clear();
   model.follows = true;

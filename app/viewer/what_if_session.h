@@ -17,11 +17,11 @@ class WhatIfSession {
 
   /// Begins what the panel asks for and takes in what is done; returns whether something is new to be seen.
   /// The simulation waits meanwhile, so that the times are those of a machine that does nothing else, and
-  /// then plays on if it did.
+  /// then plays on if it did, unless it was paused in between.
   bool poll(WhatIfModel& model, SimulationThread& simulation, const Settings& now);
-  /// Forgets what was tried: another scene has taken the simulation's place. What is under way is dropped
-  /// when it is done.
-  void forget(WhatIfModel& model);
+  /// Forgets what was tried, and lets the simulation go: another scene takes its place. What is under way is
+  /// dropped when it is done.
+  void forget(WhatIfModel& model, SimulationThread& simulation);
   /// Waits for what is under way.
   void wait() const;
 
@@ -41,7 +41,8 @@ class WhatIfSession {
   std::shared_ptr<WhatIf> copy_;
   std::shared_ptr<const StateImage> moment_;  ///< none: the next question is of that of now
   std::future<Outcome> asking_;
-  bool dropped_ = false, plays_ = false;
+  bool dropped_ = false;
+  bool holds_ = false;  ///< the simulation waits
 };
 
 }  // namespace migiwa

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <iostream>
+#include <utility>
 
 #include "app/platform/glfw_window.h"
 #include "app/viewer/editing.h"
@@ -29,6 +30,15 @@ void carryOut(const Wishes& wishes, const Settings& settings, SimulationThread& 
   if (wishes.play) simulation.play();
   if (wishes.pause) simulation.pause();
   if (wishes.step) simulation.step();
+}
+
+/// Begins when the picture before it is kept, so that no two take the same name. An empty future: none was.
+std::future<void> keepPicture(std::future<void> before, const WindowOptions& options, Image picture) {
+  return std::async(std::launch::async, [before = std::move(before), keep = options.savePicture,
+                                         picture = std::move(picture)]() mutable {
+    if (before.valid()) before.get();
+    keep(picture);
+  });
 }
 
 void printWarnings(const Scene& scene) {
@@ -65,8 +75,8 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
       looked = Clock::now();
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
-        if (change->scene) trials.forget(whatIf);
-        if (change->scene) takeOver(*change, viewer, simulation);
+        if (change->scene) trials.forget(whatIf, *simulation);
+        if (change->scene) takeOver(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
       }
@@ -81,17 +91,18 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
     last = Clock::now();
     if ((redraws == 0 && !options.frames) || width == 0 || height == 0) continue;
 
-    const Wishes wishes = viewer.frame(frame.view(), simulation->status(), input, width, height);
+    const RunStatus run = simulation->status();
+    const FrameView shown = frame.view();
+    const Wishes wishes = viewer.frame(shown, run, input, width, height);
     viewer.copyToWindow();
     window.swap();
+    if (options.drawn) options.drawn({shown, run, viewer});
     carryOut(wishes, viewer.settings(), *simulation);
     simulation->watchPressure(viewer.view().color == ColorField::pressure);
     keepState(wishes, session, *simulation);
     carryOut(editor, session, viewer.settings(), viewer.view());
-    if (wishes.savePicture && options.savePicture) {
-      if (saving.valid()) saving.get();
-      saving = std::async(std::launch::async, options.savePicture, viewer.picture());
-    }
+    if (wishes.savePicture && options.savePicture)
+      saving = keepPicture(std::move(saving), options, viewer.picture());
     redraws = std::max(redraws - 1, 0);
     ++drawn;
   }

@@ -1,9 +1,11 @@
 """Drives `migiwa view` as a hasty person would: clicks, drags, keys, the wheel, resizes, and scenes that change on the
 disk, all drawn at random from a seed, through the display's own test extension (XTEST).
 
-The window has to survive, to write only scenes that can be read again (a number that is not finite could not), and to
-end with exit code 0 when it is closed. Driven for five minutes or more, its memory has to stay flat: the median of the
-last quarter is at most a tenth above that of the second. The first quarter is for warming up.
+First it saves, on purpose, the scene as it is and with the walls' correction off; both have to come, to read back and to
+run, and the second to say so. Then, at random, the window has to survive, to write only scenes that can be read again (a
+number that is not finite could not), and to end with exit code 0 when it is closed. Driven for five minutes or more, its
+memory has to stay flat: the median of the last quarter is at most a tenth above that of the second. The first quarter is
+for warming up.
 
 Needs a display without a window manager, such as xvfb-run's. Everything lies in a scratch folder.
 
@@ -20,16 +22,18 @@ import sys
 import tempfile
 import time
 
-from Xlib import X, XK, display
-from Xlib.ext import xtest
-from Xlib.protocol import event
+from Xlib import X, XK
+
+sys.dont_write_bytecode = True
+from window_hands import DOWN, LEFT, MIDDLE, RIGHT, UP, Hands
 
 SCENES = ("dam_break", "corner_drop", "stirred_tank", "bowl", "droplet", "faucet")
 COARSER = 2
 SCREEN = (1400, 900)
 JUDGED_FROM = 300  # seconds of driving
 MOST_GROWTH = 1.1
-LEFT, MIDDLE, RIGHT, UP, DOWN = 1, 2, 3, 4, 5
+# Where the buttons are in a window of 1280 x 720.
+EDIT_SCENE, SAVE_AS, NAME_FIELD, IN_THE_SCENE = (80, 40), (905, 687), (1100, 687), (500, 600)
 # Typed text names no folder: there is no slash.
 LETTERS = "abcdefghijklmnopqrstuvwxyz0123456789.,-[]= "
 NAMES = {".": "period", ",": "comma", "-": "minus", "[": "bracketleft", "]": "bracketright", "=": "equal", " ": "space"}
@@ -53,31 +57,16 @@ def coarse(name):
     return json.dumps(scene, indent=2)
 
 
-class Window:
-    """The one window on the display, and a person's hands."""
+class Person(Hands):
+    """Hands that do anything anywhere, and one thing on purpose: they save the scene."""
 
     def __init__(self):
-        self.display = display.Display()
-        self.window = None
-        end = time.monotonic() + 60
-        while self.window is None:
-            if time.monotonic() > end or process.poll() is not None:
-                fail("no window has opened")
-            time.sleep(0.1)
-            for child in self.display.screen().root.query_tree().children:
-                if child.get_attributes().map_state == X.IsViewable and child.get_geometry().width > 100:
-                    self.window = child
-        self.window.set_input_focus(X.RevertToPointerRoot, X.CurrentTime)
+        super().__init__(lambda: process.poll() is None)
         self.resize(1280, 720)
-
-    def fake(self, kind, detail=0, x=0, y=0):
-        xtest.fake_input(self.display, kind, detail, x=x, y=y)
-        self.display.sync()
 
     def resize(self, width, height):
         self.size = (width, height)
-        self.window.configure(x=0, y=0, width=width, height=height)
-        self.display.sync()
+        super().resize(width, height)
 
     def anywhere(self):
         """Most often in the panels, at the left, and now and then where the editor, if open, has its buttons."""
@@ -87,14 +76,6 @@ class Window:
             width = min(width, 330)
         top = max(height - 90, 0) if where > 0.85 else 0
         return rng.randrange(width), rng.randrange(top, height)
-
-    def move(self, place):
-        self.fake(X.MotionNotify, x=place[0], y=place[1])
-
-    def click(self, button=LEFT, times=1):
-        for _ in range(times):
-            self.fake(X.ButtonPress, button)
-            self.fake(X.ButtonRelease, button)
 
     def drag(self):
         start, end = self.anywhere(), self.anywhere()
@@ -106,23 +87,43 @@ class Window:
             time.sleep(0.005)
         self.fake(X.ButtonRelease, button)
 
-    def key(self, name, held=None):
-        codes = [self.display.keysym_to_keycode(XK.string_to_keysym(n)) for n in (held, name) if n]
-        for code in codes:
-            self.fake(X.KeyPress, code)
-        for code in reversed(codes):
-            self.fake(X.KeyRelease, code)
-
     def type(self):
         for _ in range(rng.randint(1, 8)):
             letter = rng.choice(LETTERS)
             self.key(NAMES.get(letter, letter), rng.choice((None, None, "Shift_L")))
 
-    def close(self):
-        atom = self.display.intern_atom
-        message = (32, [atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0])
-        self.window.send_event(event.ClientMessage(window=self.window, client_type=atom("WM_PROTOCOLS"), data=message))
-        self.display.sync()
+    def learn_pace(self):
+        """How long the window takes to see something and to show it, where a picture that is kept tells so."""
+        for _ in range(3):
+            begin, known = time.monotonic(), set(scratch.glob("*.png"))
+            self.key("p")
+            while set(scratch.glob("*.png")) == known:
+                if time.monotonic() > begin + 120 or process.poll() is not None:
+                    fail("no picture was kept")
+                time.sleep(0.02)
+            # The first one waits for the window to open, too.
+            self.pace = max(0.2, 2 * (time.monotonic() - begin))
+
+    def do(self, kind, detail=0, place=(0, 0)):
+        self.fake(kind, detail, *place)
+        time.sleep(self.pace)
+
+    def press(self, place):
+        """As a person does: first there, then down, then up, and each is seen."""
+        self.do(X.MotionNotify, 0, place)
+        self.do(X.ButtonPress, LEFT)
+        self.do(X.ButtonRelease, LEFT)
+
+    def save_as(self, name):
+        """In a window of 1280 x 720 with the editor open."""
+        self.press(NAME_FIELD)
+        control, a = (self.display.keysym_to_keycode(XK.string_to_keysym(key)) for key in ("Control_L", "a"))
+        for kind, code in ((X.KeyPress, control), (X.KeyPress, a), (X.KeyRelease, a), (X.KeyRelease, control)):
+            self.do(kind, code)
+        for letter in name:
+            self.key(NAMES.get(letter, letter))
+        time.sleep(self.pace)
+        self.press(SAVE_AS)
 
 
 class Disk:
@@ -164,6 +165,52 @@ class Disk:
             text = text[:at] + rng.choice(LETTERS) + text[at + rng.randint(0, 2) :]
         for file in list(scratch.glob("*.json")):
             self.write(file, text)
+
+
+def saved_scene(name, disk):
+    """Waits for the file, runs what it says, and returns it."""
+    file, end = scratch / f"{name}.json", time.monotonic() + 120
+    while not file.exists():
+        if time.monotonic() > end or process.poll() is not None:
+            fail(f"{file.name} was not saved")
+        time.sleep(0.1)
+    before = disk.saved
+    disk.look()
+    if disk.saved != before + 1:
+        fail(f"{disk.saved - before} scenes were saved where {file.name} alone was asked for")
+    report = scratch / "report.txt"
+    run = subprocess.run(
+        [program, "simulate", str(file), "--until", "0.02", "--report", str(report)],
+        capture_output=True,
+        text=True,
+        env=environment,
+    )
+    if run.returncode != 0:
+        fail(f"{file.name} was saved by the window and does not run:\n{run.stderr}")
+    if json.loads(report.read_text())["particles"] == 0:
+        fail(f"{file.name} was saved without its water")
+    return json.loads(file.read_text())
+
+
+def save_on_purpose(window, disk):
+    window.learn_pace()
+    window.press(EDIT_SCENE)
+    window.save_as("asitis")
+    asked = json.loads(disk.texts[SCENES[0]])
+    saved = saved_scene("asitis", disk)
+    for key in ("name", "particle_spacing", "fluid"):
+        if saved.get(key) != asked.get(key):
+            fail(f"asitis.json has another {key}: {saved.get(key)}")
+    if saved["boundary"]["handling"] != "gamma":
+        fail(f"asitis.json handles walls by {saved['boundary']['handling']}")
+    # Out of the name, or it would be a letter there.
+    window.press(IN_THE_SCENE)
+    window.key("c")
+    time.sleep(window.pace)
+    window.save_as("without")
+    handling = saved_scene("without", disk)["boundary"]["handling"]
+    if handling != "none":
+        fail(f"without.json was saved with the correction off and handles walls by {handling}")
 
 
 def act(window, disk):
@@ -208,7 +255,11 @@ with tempfile.TemporaryDirectory(prefix="migiwa_window_") as folder:
     disk = Disk()
     with (scratch / "errors").open("w") as errors:
         process = subprocess.Popen([program, "view", "scene.json"], cwd=scratch, env=environment, stdout=errors, stderr=errors)
-    window = Window()
+    try:
+        window = Person()
+    except TimeoutError as error:
+        fail(error)
+    save_on_purpose(window, disk)
     start, memory, acts = time.monotonic(), [], 0
     while (since := time.monotonic() - start) < seconds:
         act(window, disk)

@@ -63,6 +63,15 @@ TEST_F(PanelsTest, StoppedSimulationOffersResetOnly) {
   EXPECT_TRUE(click(260, 40).reset);
 }
 
+TEST_F(PanelsTest, HeldSimulationOffersToPauseOnly) {
+  run_.heldFor = "a test";
+  EXPECT_FALSE(click(55, 40).play);
+  EXPECT_FALSE(click(160, 40).step);
+  EXPECT_FALSE(click(260, 40).reset);
+  run_.playing = true;
+  EXPECT_TRUE(click(55, 40).pause);
+}
+
 TEST_F(PanelsTest, HandlingOfWallsIsPickedFromItsListAndSwitchedByItsKey) {
   ASSERT_EQ(viewer_.settings().boundary.handling, BoundaryHandling::gamma);
   EXPECT_FALSE(click(200, 109).settings) << "opens the list";

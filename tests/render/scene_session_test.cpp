@@ -1,6 +1,10 @@
 // A scene's file that is edited while its simulation is there.
 #include "app/viewer/scene_session.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fstream>
 #include <thread>
 
@@ -125,7 +129,7 @@ TEST_F(SceneSessionTest, ParametersNeedNoNewBeginning) {
   ASSERT_TRUE(changed && changed->scene);
   EXPECT_EQ(changed->scene->solver.tolerance, 0.04);
   EXPECT_FALSE(changed->simulation);
-  EXPECT_TRUE(changed->fromFile);
+  EXPECT_TRUE(changed->fromFile());
   EXPECT_FALSE(change());
 }
 
@@ -239,7 +243,7 @@ TEST_F(SceneSessionTest, TextsFromTheWindowAreTakenWithoutTheFile) {
   session_->apply(sceneText(0.02, 0.7));
   const auto changed = change();
   ASSERT_TRUE(changed && changed->scene && changed->simulation);
-  EXPECT_FALSE(changed->fromFile);
+  EXPECT_FALSE(changed->fromFile());
   EXPECT_EQ(session_->fileText(), sceneText(0.02, 0.5));
   session_->apply("{ \"format\": 1, }");
   const auto broken = change();
@@ -260,7 +264,10 @@ TEST_F(SceneSessionTest, SavedAsItIsNowReadsBackToTheSameHash) {
   view.camera.eye = {3, 2, 1};
   view.clip = {true, Axis::z, 0.25};
   view.color = ColorField::speed;
-  session_->saveAs("other", session_->fileText(), settings, view);
+  session_->saveAs({"other", session_->fileText(), settings, view});
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->saved && changed->scene);
+  EXPECT_FALSE(changed->simulation);
 
   const Scene saved = readScene(folder_ / "other.json");
   EXPECT_EQ(saved.view.camera, view.camera);
@@ -277,10 +284,146 @@ TEST_F(SceneSessionTest, SavedAsItIsNowReadsBackToTheSameHash) {
 TEST_F(SceneSessionTest, NothingIsSavedFromAFaultyTextOrUnderAWrongName) {
   const Settings settings;
   const ViewState view;
-  EXPECT_THROW(session_->saveAs("other.json", "{}", settings, view), InputError);
-  EXPECT_THROW(session_->saveAs("", session_->fileText(), settings, view), InputError);
-  EXPECT_THROW(session_->saveAs("../other.json", session_->fileText(), settings, view), InputError);
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    session_->saveAs({name, text, settings, view});
+    const auto changed = change();
+    return changed && !changed->saved && !changed->scene && !changed->faults.empty() &&
+           changed->source == SceneChange::Source::save;
+  };
+  EXPECT_TRUE(refused("other.json", "{}"));
+  EXPECT_TRUE(refused("", session_->fileText()));
+  EXPECT_TRUE(refused("../other.json", session_->fileText()));
+  EXPECT_EQ(session_->file(), file_);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+/// A pipe in the place of a file: whoever reads it waits for finish(), after which it is a file like others.
+class SlowFile {
+ public:
+  SlowFile(fs::path file, std::string content) : file_(std::move(file)), content_(std::move(content)) {
+    EXPECT_EQ(mkfifo(pipe().c_str(), 0600), 0);
+    fs::create_hard_link(pipe(), file_);
+  }
+  /// Waits until somebody reads.
+  void awaitReader() { out_ = open(pipe().c_str(), O_WRONLY | O_CLOEXEC); }
+  void finish() const {
+    writeByRename(file_, content_);
+    EXPECT_EQ(write(out_, content_.data(), content_.size()), static_cast<ssize_t>(content_.size()));
+    close(out_);
+  }
+
+ private:
+  std::string pipe() const { return file_.string() + ".pipe"; }
+
+  fs::path file_;
+  std::string content_;
+  int out_ = -1;
+};
+
+/// The calls of a window between two frames, while somebody waits for a slow file. Each returns, or the test
+/// never ends.
+class SlowSceneTest : public SceneSessionTest {
+ protected:
+  void expectNoNews() {
+    slow_.awaitReader();
+    for (int k = 0; k < 5; ++k) EXPECT_FALSE(session_->poll());
+    EXPECT_EQ(session_->file(), file_);
+    EXPECT_EQ(session_->stateFile(), folder_ / "scene.save");
+  }
+
+  const std::string text_ = R"({ "include": "slow.json", "solver": { "max_iterations": 9 } })";
+  SlowFile slow_{folder_ / "slow.json", sceneText(0.05, 0.5)};
+};
+
+TEST_F(SlowSceneTest, IsAppliedInTheBackground) {
+  session_->apply(text_);
+  expectNoNews();
+  session_->apply("out of date before anybody reads it");
+  session_->apply(sceneText(0.06, 0.5));
+  EXPECT_FALSE(session_->poll());
+  slow_.finish();
+  const auto slow = change();
+  ASSERT_TRUE(slow && slow->scene);
+  EXPECT_EQ(slow->scene->solver.tolerance, 0.05);
+  EXPECT_EQ(slow->scene->solver.maxIterations, 9);
+  const auto next = change();
+  ASSERT_TRUE(next && next->scene);
+  EXPECT_EQ(next->scene->solver.tolerance, 0.06);
+  EXPECT_FALSE(change());
+}
+
+TEST_F(SlowSceneTest, IsSavedInTheBackground) {
+  const Scene scene = readScene(file_);
+  Settings settings{scene.solver, scene.boundary, scene.effects};
+  settings.solver.tolerance = 0.07;
+  session_->saveAs({"other", text_, settings, {}});
+  expectNoNews();
+  EXPECT_FALSE(fs::exists(folder_ / "other.json"));
+  slow_.finish();
+  const auto saved = change();
+  ASSERT_TRUE(saved && saved->saved && saved->scene);
+  EXPECT_EQ(session_->file(), folder_ / "other.json");
+  EXPECT_EQ(readScene(folder_ / "other.json").solver.tolerance, 0.07);
+  EXPECT_FALSE(change()) << "the session's own file is no news";
+}
+
+TEST_F(SlowSceneTest, IsReadAgainInTheBackground) {
+  writeByRename(file_, text_);
+  EXPECT_FALSE(session_->poll());
+  session_->wait();
+  EXPECT_FALSE(session_->poll());
+  expectNoNews();
+  EXPECT_EQ(session_->fileText(), sceneText(0.02, 0.5)) << "as last taken over";
+  slow_.finish();
+  const auto changed = change();
+  ASSERT_TRUE(changed && changed->scene);
+  EXPECT_EQ(changed->scene->solver.tolerance, 0.05);
+  EXPECT_EQ(session_->fileText(), text_);
+}
+
+TEST_F(SlowSceneTest, IsStillSavedWhenTheWindowCloses) {
+  session_->apply(text_);
+  slow_.awaitReader();
+  const Scene scene = readScene(file_);
+  session_->apply("not read any more");
+  session_->saveAs({"last", sceneText(0.08, 0.5), {scene.solver, scene.boundary, scene.effects}, {}});
+  slow_.finish();
+  session_.reset();
+  EXPECT_EQ(readScene(folder_ / "last.json").surfaces.size(), 1U);
+}
+
+/// Of the calling thread, from files and pipes; nothing where the system does not count them.
+std::optional<long> bytesReadHere() {
+  std::ifstream io("/proc/thread-self/io");
+  std::string name;
+  long bytes = 0;
+  if (!(io >> name >> bytes) || name != "rchar:") return std::nullopt;
+  return bytes;
+}
+
+TEST_F(SceneSessionTest, WhoAsksReadsNoFile) {
+  constexpr std::size_t kLong = std::size_t{1} << 22;
+  const auto mesh = [&](char padding) {
+    return "# " + std::string(kLong, padding) +
+           "\nv 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nv 0 0 0.5\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  };
+  const std::string text =
+      R"({ "format": 1, "particle_spacing": 0.1, "fluid": [ { "shape": "mesh", "file": "fluid.obj" } ] })";
+  writeInPlace(folder_ / "fluid.obj", mesh('a'));
+  writeInPlace(file_, text);
+  const Scene scene = readScene(file_);
+  session_ = std::make_unique<SceneSession>(scene, SessionOptions{{}, 1, Pace::unlimited});
+  if (!bytesReadHere()) GTEST_SKIP() << "this system does not count what a thread reads";
+  writeByRename(folder_ / "fluid.obj", mesh('b'));
+
+  const long before = *bytesReadHere();
+  EXPECT_TRUE(change()) << "another content";
+  session_->apply(text + " ");
+  EXPECT_TRUE(change());
+  session_->saveAs({"other", text, {scene.solver, scene.boundary, scene.effects}, {}});
+  const auto saved = change();
+  EXPECT_TRUE(saved && saved->saved);
+  EXPECT_LT(*bytesReadHere() - before, 4096) << "the counter itself";
 }
 
 }  // namespace

@@ -96,16 +96,17 @@ TEST_F(WhatIfTest, ARunThatPlaysWaitsAndPlaysOn) {
   simulation_->play();
   model_.ask = true;
   session_.poll(model_, *simulation_, viewer_->settings());
-  EXPECT_FALSE(simulation_->status().playing);
+  EXPECT_FALSE(simulation_->status().heldFor.empty());
   session_.wait();
   session_.poll(model_, *simulation_, viewer_->settings());
+  EXPECT_TRUE(simulation_->status().heldFor.empty());
   EXPECT_TRUE(simulation_->status().playing);
 }
 
 TEST_F(WhatIfTest, WhatWasAskedOfAnotherSceneIsDropped) {
   model_.ask = true;
   session_.poll(model_, *simulation_, viewer_->settings());
-  session_.forget(model_);
+  session_.forget(model_, *simulation_);
   session_.wait();
   session_.poll(model_, *simulation_, viewer_->settings());
   EXPECT_TRUE(model_.points.empty());

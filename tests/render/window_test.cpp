@@ -1,9 +1,17 @@
-// A real window: needs a display, such as xvfb-run's.
+// A real window, driven by real keys and clicks: needs a display, such as xvfb-run's.
+#include <csignal>
+#include <cstdio>
+#include <future>
+#include <thread>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "app/platform/egl_context.h"
 #include "app/platform/glfw_window.h"
+#include "app/ui/scene_editor.h"
 #include "app/viewer/viewer.h"
+#include "app/viewer/what_if_session.h"
 #include "app/viewer/window_loop.h"
 #include "core/scene/scene_reader.h"
 #include "core/simulation/simulation.h"
@@ -65,11 +73,209 @@ TEST(WindowTest, DrawsSurfacesAndNodesWithTheSameBytesAsEgl) {
   }
 }
 
+/// A person at the window, in a program of its own (window_hands.py).
+class Hands {
+ public:
+  Hands() : pipe_(popen("exec /usr/bin/python3 " MIGIWA_SOURCE_DIR "/tests/render/window_hands.py", "w")) {
+    // If it fails, the test is to say so and not to end.
+    std::signal(SIGPIPE, SIG_IGN);
+  }
+  ~Hands() { EXPECT_EQ(pclose(pipe_), 0); }
+  Hands(const Hands&) = delete;
+  Hands& operator=(const Hands&) = delete;
+
+  void act(const std::string& line) {
+    std::fputs((line + "\n").c_str(), pipe_);
+    std::fflush(pipe_);
+  }
+
+ private:
+  std::FILE* pipe_;
+};
+
+/// A frame of the window's, kept until it is closed.
+struct Seen {
+  explicit Seen(const DrawnFrame& drawn)
+      : info(drawn.frame.info),
+        particles(drawn.frame.positions.size()),
+        run(drawn.run),
+        handling(drawn.viewer.settings().boundary.handling),
+        picture(drawn.viewer.picture()) {}
+
+  FrameInfo info;
+  std::size_t particles;
+  RunStatus run;
+  BoundaryHandling handling;
+  Image picture;
+};
+
+/// What is done at the window, nothing perhaps, and what shows that it has been done.
+struct Act {
+  std::string line;
+  std::function<bool(const DrawnFrame&)> done;
+};
+
+std::function<bool(const DrawnFrame&)> afterFrames(int count) {
+  return [count](const DrawnFrame&) mutable { return --count <= 0; };
+}
+
+/// Does one thing after the other in a window on the small scene, closes it, and returns the frame after each;
+/// fewer where something was never done.
+std::vector<Seen> windowAfter(const std::vector<Act>& acts, WindowOptions options = {}) {
+  constexpr long kMostFrames = 2000;
+  std::vector<Seen> seen;
+  bool begun = false;
+  Hands hands;
+  options.frames = kMostFrames;
+  options.threads = 1;
+  options.drawn = [&](const DrawnFrame& drawn) {
+    if (seen.size() == acts.size()) return;
+    const Act& act = acts[seen.size()];
+    if (!std::exchange(begun, true)) {
+      if (!act.line.empty()) hands.act(act.line);
+      return;
+    }
+    if (!act.done(drawn)) return;
+    begun = false;
+    seen.emplace_back(drawn);
+    if (seen.size() == acts.size()) hands.act("close");
+  };
+  runWindow(smallScene(), options);
+  EXPECT_EQ(seen.size(), acts.size()) << "the window never showed what act " << seen.size() << " does";
+  return seen;
+}
+
+/// The scene's middle, where there is water and no text; a wall time is never the same again.
+Image middleOf(const Image& picture) {
+  constexpr int kLeft = 560, kTop = 220, kWide = 520, kHigh = 320;
+  Image part(kWide, kHigh);
+  for (int y = 0; y < kHigh; ++y)
+    std::copy_n(picture.pixel(kLeft, kTop + y), 4 * kWide, part.pixel(0, y));
+  return part;
+}
+
+/// The same picture, off-screen.
+Image middleWithoutWindow(const Simulation& simulation, const RunStatus& run, bool panels) {
+  const auto context = makeEglContext();
+  SceneEditor editor;
+  WhatIfModel whatIf;
+  Viewer viewer(simulation.scene(), simulation.walls(),
+                {.scale = 1, .panels = panels, .editor = &editor, .whatIf = &whatIf});
+  return middleOf(viewer.takePicture(simulation.drawnView(), run, 1280, 720));
+}
+
+void advanceTo(Simulation& simulation, double time) {
+  while (simulation.time() < time - 1e-9) simulation.advanceFrame();
+}
+
 TEST(WindowTest, LoopDrawsSoManyFramesAndCloses) {
   WindowOptions options;
   options.frames = 20;
   options.threads = 1;
+  options.playing = false;
+  std::vector<Seen> seen;
+  options.drawn = [&](const DrawnFrame& drawn) { seen.emplace_back(drawn); };
   runWindow(smallScene(), options);
+  ASSERT_EQ(seen.size(), 20U);
+  const Simulation start(smallScene(), 1);
+  for (const Seen& frame : seen) {
+    EXPECT_EQ(frame.info.stateHash, start.stateHash());
+    EXPECT_EQ(frame.particles, 150U);
+    EXPECT_FALSE(frame.run.playing);
+  }
+  EXPECT_EQ(middleOf(seen.back().picture).rgba, middleWithoutWindow(start, {}, true).rgba);
+}
+
+TEST(WindowTest, PlaysAtOnceUnlessItIsAskedNotTo) {
+  const std::vector<Seen> seen =
+      windowAfter({{"", [](const DrawnFrame& drawn) { return drawn.frame.info.time > 0.099; }}});
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_TRUE(seen[0].run.playing);
+  Simulation same(smallScene(), 1);
+  advanceTo(same, seen[0].info.time);
+  EXPECT_EQ(seen[0].info.stateHash, same.stateHash());
+}
+
+TEST(WindowTest, KeysPlayPauseStepAndReset) {
+  const auto steps = [](long count) {
+    return [count](const DrawnFrame& drawn) { return drawn.frame.info.steps == count; };
+  };
+  const auto playing = [](bool wanted) {
+    return [wanted](const DrawnFrame& drawn) {
+      return drawn.run.playing == wanted && (!wanted || drawn.frame.info.time > 0.06);
+    };
+  };
+  enum { start, step1, step2, played, paused, rested, rested2, stepped, again };
+  WindowOptions options;
+  options.playing = false;
+  const std::vector<Seen> seen = windowAfter({{"", afterFrames(3)},
+                                              {"key Right", steps(1)},
+                                              {"key Right", steps(2)},
+                                              {"key space", playing(true)},
+                                              {"key space", playing(false)},
+                                              {"", afterFrames(20)},
+                                              {"", afterFrames(20)},
+                                              {"key Right", afterFrames(20)},
+                                              {"key r", steps(0)}},
+                                             options);
+  ASSERT_EQ(seen.size(), std::size_t{again} + 1);
+  Simulation same(smallScene(), 1);
+  EXPECT_EQ(seen[start].info.stateHash, same.stateHash());
+  for (const int k : {step1, step2}) {
+    same.advanceFrame();
+    EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.stateHash, same.stateHash()) << "step " << k;
+  }
+  EXPECT_GT(seen[played].info.time, 0.06);
+  EXPECT_EQ(seen[rested].info.steps, seen[rested2].info.steps) << "paused";
+  advanceTo(same, seen[rested].info.time);
+  EXPECT_EQ(seen[rested].info.stateHash, same.stateHash());
+  const Image shown = middleOf(seen[rested].picture);
+  EXPECT_EQ(shown.rgba, middleWithoutWindow(same, seen[rested].run, true).rgba);
+  EXPECT_NE(shown.rgba, middleOf(seen[start].picture).rgba) << "the water has not moved";
+  same.advanceFrame();
+  EXPECT_EQ(seen[stepped].info.stateHash, same.stateHash()) << "one more step";
+  EXPECT_EQ(seen[again].info.stateHash, seen[start].info.stateHash);
+  EXPECT_FALSE(seen[again].run.playing);
+}
+
+TEST(WindowTest, KeysAndButtonsChangeWhatIsShownAndComputed) {
+  std::promise<Image> kept;
+  std::future<Image> picture = kept.get_future();
+  WindowOptions options;
+  options.playing = false;
+  options.savePicture = [&](const Image& image) { kept.set_value(image); };
+  const auto isKept = [&](const DrawnFrame&) {
+    return picture.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  const auto changed = [](const DrawnFrame& drawn) {
+    return drawn.viewer.settings().boundary.handling == BoundaryHandling::none;
+  };
+  const auto steps = [](long count) {
+    return [count](const DrawnFrame& drawn) { return drawn.frame.info.steps == count; };
+  };
+  enum { kPicture, kHidden, kChanged, kStepped, kShown, kClicked };
+  const std::vector<Seen> seen = windowAfter({{"key p", isKept},
+                                              {"key h", afterFrames(20)},
+                                              {"key c", changed},
+                                              {"key Right", steps(1)},
+                                              {"key h", afterFrames(20)},
+                                              {"click 160 86", steps(2)}},
+                                             options);
+  ASSERT_EQ(seen.size(), std::size_t{kClicked} + 1);
+  Simulation same(smallScene(), 1);
+  EXPECT_EQ(middleOf(picture.get()).rgba, middleWithoutWindow(same, {}, true).rgba);
+  const Image hidden = middleOf(seen[kHidden].picture);
+  EXPECT_EQ(hidden.rgba, middleWithoutWindow(same, {}, false).rgba);
+  EXPECT_NE(hidden.rgba, middleOf(seen[kPicture].picture).rgba) << "the scene has all of the window";
+
+  Settings settings = same.settings();
+  settings.boundary.handling = BoundaryHandling::none;
+  same.apply(settings);
+  for (const int k : {kStepped, kClicked}) {
+    same.advanceFrame();
+    EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.stateHash, same.stateHash());
+    EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.handling, "no correction");
+  }
 }
 
 TEST(WindowTest, SizeIsAskedForInPixels) {
