@@ -163,15 +163,13 @@ SceneSession::Answer SceneSession::carryOut(Wish wish, bool last) {
       change.saved = std::move(wish.save);
     });
   } else if (change.fromFile()) {
-    change.faults =
-        faultsOf(reader_.file, {}, [&] { text = readTextFile(reader_.file, "a scene file"); });
+    change.faults = faultsOf(reader_.file, {}, [&] { text = readTextFile(reader_.file, "a scene file"); });
     change.fileText = text;
   }
   if (change.faults.empty() && !last) {
     Files named;
     change.faults = faultsOf(reader_.file, text, [&] { read(text, change, named); });
-    faultsOf(reader_.file, text,
-             [&] { reader_.watch.follow(joined(filesOfScene(reader_.file), named)); });
+    faultsOf(reader_.file, text, [&] { reader_.watch.follow(joined(filesOfScene(reader_.file), named)); });
   }
   answer.file = reader_.file;
   answer.overrides = reader_.options.overrides;

@@ -58,7 +58,8 @@ bool SimulationThread::refuses(const char* wish, bool needsGoodState) {
   const bool held = !status_.heldFor.empty();
   const bool refused = held || (needsGoodState && status_.stopped);
   status_.refused.clear();
-  if (refused) status_.refused = std::string(wish) + " refused: " + (held ? status_.heldFor : "it has stopped");
+  if (refused)
+    status_.refused = std::string(wish) + " refused: " + (held ? status_.heldFor : "it has stopped");
   return refused;
 }
 

@@ -1,11 +1,14 @@
 // Frames under input drawn at random, on a simulation that does what is asked for: whatever a person does, no
-// number is shown that is not finite. The real window is driven from outside, by drive_window.py.
+// number is shown that is not finite, the time shown is the simulation's, and what was done has had effects.
+// The real window is driven from outside, by drive_window.py.
+#include <algorithm>
 #include <cctype>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "app/platform/egl_context.h"
+#include "app/ui/number_text.h"
 #include "app/viewer/viewer.h"
 #include "core/simulation/simulation.h"
 #include "tests/render/shown_text.h"
@@ -87,23 +90,35 @@ class Session : public ::testing::Test {
   Viewer viewer_{scene_, simulation_->walls(), {0.8, true, true}};
 };
 
-class RandomInput : public Session, public ::testing::WithParamInterface<unsigned> {};
+using RandomInput = Session;
 
-TEST_P(RandomInput, ShowsFiniteNumbersOnly) {
-  Hands hands(GetParam());
+TEST_F(RandomInput, ShowsFiniteNumbersAndHasEffects) {
   run_.playing = true;
   carryOut({});
-  for (int k = 0; k < kFrames; ++k) {
-    carryOut(frame(hands.next()));
-    const std::string text = shownText();
-    ASSERT_FALSE(showsNonFinite(text)) << "in frame " << k << ": " << text;
-    const ViewState& view = viewer_.view();
-    ASSERT_TRUE(view.camera.eye.allFinite() && view.camera.target.allFinite() && std::isfinite(view.clip.at))
-        << "in frame " << k;
+  double latest = 0;
+  bool turned = false, changed = false;
+  for (const unsigned seed : {1U, 2U}) {
+    Hands hands(seed);
+    for (int k = 0; k < kFrames; ++k) {
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << ", frame " << k);
+      const double time = frame_.info.time;
+      const Wishes wishes = frame(hands.next());
+      carryOut(wishes);
+      const std::string text = shownText();
+      ASSERT_NE(text.find(formatNumber("%.3f s", time)), std::string::npos) << time << ": " << text;
+      ASSERT_FALSE(showsNonFinite(text)) << text;
+      const ViewState& view = viewer_.view();
+      ASSERT_TRUE(view.camera.eye.allFinite() && view.camera.target.allFinite() &&
+                  std::isfinite(view.clip.at));
+      latest = std::max(latest, time);
+      turned |= view.camera != scene_.view.camera;
+      changed |= wishes.settings;
+    }
   }
+  EXPECT_GT(latest, 0.01) << "the simulation never went on";
+  EXPECT_TRUE(turned) << "the camera has stayed where it was";
+  EXPECT_TRUE(changed) << "no setting was changed";
 }
-
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomInput, ::testing::Range(1U, 3U));
 
 /// What the test above would miss if it could not read.
 using ShownText = Session;

@@ -1,14 +1,13 @@
 // A scene's file that is edited while its simulation is there.
 #include "app/viewer/scene_session.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <fstream>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/simulation/simulation.h"
 #include "tests/render/test_scene.h"

@@ -119,8 +119,8 @@ std::function<bool(const DrawnFrame&)> afterFrames(int count) {
   return [count](const DrawnFrame&) mutable { return --count <= 0; };
 }
 
-/// Does one thing after the other in a window on the small scene, closes it, and returns the frame after each;
-/// fewer where something was never done.
+/// Does one thing after the other in a window on the small scene, closes it, and returns the frame after
+/// each; fewer where something was never done.
 std::vector<Seen> windowAfter(const std::vector<Act>& acts, WindowOptions options = {}) {
   constexpr long kMostFrames = 2000;
   std::vector<Seen> seen;
@@ -149,8 +149,7 @@ std::vector<Seen> windowAfter(const std::vector<Act>& acts, WindowOptions option
 Image middleOf(const Image& picture) {
   constexpr int kLeft = 560, kTop = 220, kWide = 520, kHigh = 320;
   Image part(kWide, kHigh);
-  for (int y = 0; y < kHigh; ++y)
-    std::copy_n(picture.pixel(kLeft, kTop + y), 4 * kWide, part.pixel(0, y));
+  for (int y = 0; y < kHigh; ++y) std::copy_n(picture.pixel(kLeft, kTop + y), 4 * kWide, part.pixel(0, y));
   return part;
 }
 
