@@ -57,7 +57,8 @@ class Blocks {
     const Vec3d gravity = state_.gravity.cast<double>();
     double sum = 0;
     for (std::size_t i = 0; i < state_.particles.size(); ++i) {
-      const Vec3d velocity = state_.particles.velocity[i].xyz().cast<double>() + 0.5 * kStep * gravity;
+      const Vec3d velocity =
+          state_.particles.velocity[i].xyz().cast<double>() + 0.5 * static_cast<double>(kStep) * gravity;
       sum += 0.5 * velocity.squaredNorm() - gravity.dot(state_.particles.position[i].xyz().cast<double>());
     }
     return sum;
