@@ -120,7 +120,7 @@ void addBrokenMeshes(std::vector<HardCase>& cases) {
   };
   for (const char* scene : {"slim_shell", "slim_shell_slivered", "slim_shell_inverted"})
     cases.push_back(bowl(scene, 1.1 * kFall));
-  cases.push_back(guarded(bowl("slim_shell_crossing", 1.1 * kFall), "energy_held"));
+  cases.push_back(bowl("slim_shell_crossing", 1.1 * kFall));
   HardCase holed = bowl("slim_shell_holed", 2 * kFall);
   holed.guards = {"energy_held", "wall_jump"};
   cases.push_back(holed);
@@ -156,7 +156,9 @@ std::vector<HardCase> hardCases() {
   for (const char* scene : {"particles_0", "particles_1", "particles_2", "particles_3"})
     cases.push_back(everyMethod(resting(timed(scene, 1, 3.5), 1e-3)));
   // 20,000 steps, or a million in the soak.
-  cases.push_back(resting(timed("rest", std::getenv("MIGIWA_SOAK") != nullptr ? 5000 : 100, 1), 0.02));
+  // Set down on a lattice it relaxes for some steps, more than its walls let it give back.
+  cases.push_back(guarded(resting(timed("rest", std::getenv("MIGIWA_SOAK") != nullptr ? 5000 : 100, 1), 0.02),
+                          "energy_held"));
   cases.push_back(timed("one_kilometre", 0.5, 10));
   return cases;
 }

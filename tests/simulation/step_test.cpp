@@ -127,8 +127,10 @@ TEST(Step, MoreIterationsBringTheErrorDown) {
   scene.solver.tolerance = 0;
   scene.solver.maxIterations = 40;
   Simulation simulation(scene, 1);
-  for (int k = 0; k < 5; ++k) simulation.advanceFrame();
+  // The first solve: after it the water flies apart a little, and there may be no error to bring down.
+  simulation.advanceFrame();
   const std::vector<IterationError> errors = simulation.view().info.errors;
+  ASSERT_GT(errors.front().mean, 1e-3);
   EXPECT_LT(errors.back().mean, 0.1 * errors.front().mean);
   for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_LT(errors[k].mean, errors[k - 1].mean * 1.05) << k;
 }
