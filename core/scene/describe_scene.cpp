@@ -149,7 +149,8 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
 
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
-  visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1), {"s", "Time from one frame to the next."});
+  visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1),
+                 {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
                   {"1", "Parts that a frame is divided into, at least."});
   visitor.number("cfl", solver.cfl, Range::closed(0, 10),

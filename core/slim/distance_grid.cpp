@@ -174,7 +174,8 @@ DistanceGrid::Sample DistanceGrid::at(const Vec3f& p) const {
     const float steep = sample.gradient.norm();
     const bool known = steep > 0.5F;
     const Vec3f away = beyond + (known ? sample.distance / steep : 0) * sample.gradient;
-    const float length = known ? away.norm() : std::sqrt(beyond.squaredNorm() + sample.distance * sample.distance);
+    const float length =
+        known ? away.norm() : std::sqrt(beyond.squaredNorm() + sample.distance * sample.distance);
     sample.distance = std::copysign(length, sample.distance);
     sample.gradient = away / std::copysign(std::max(away.norm(), 1e-12F), sample.distance);
   }
