@@ -29,6 +29,27 @@ void watchWalls(const Boundary& boundary, const Scene& scene, const FrameView& v
   }
 }
 
+/// The rms speed of single frames, and over them.
+class RestWatch {
+ public:
+  void see(const FrameView& view) {
+    double squares = 0;
+    for (const Float4& v : view.velocities) squares += v.xyz().cast<double>().squaredNorm();
+    squares /= std::max<double>(1, static_cast<double>(view.velocities.size()));
+    squares_ += squares, speeds_ += std::sqrt(squares), ++frames_;
+  }
+  void finish(Observed& seen) const {
+    if (frames_ == 0) return;
+    const double square = squares_ / frames_, mean = speeds_ / frames_;
+    seen.rmsSpeed = std::sqrt(square);
+    seen.rmsSpread = std::sqrt(std::max(0.0, square - mean * mean));
+  }
+
+ private:
+  double squares_ = 0, speeds_ = 0;
+  int frames_ = 0;
+};
+
 }  // namespace
 
 Scene sceneOf(const HardCase& hardCase, const std::string& method) {
@@ -47,6 +68,7 @@ Observed observe(const Scene& scene, double until, int threads) {
   const Boundary boundary(scene.surfaces);
   Observed seen;
   EnergyWatch energy(simulation);
+  RestWatch rest;
   const Vec3d momentum = momentumOf(simulation.view());
   watchWalls(boundary, scene, simulation.view(), seen);
   const long last = simulation.frameAt(until);
@@ -56,6 +78,7 @@ Observed observe(const Scene& scene, double until, int threads) {
     const FrameView view = simulation.view();
     seen.momentum = (momentumOf(view) - momentum - simulation.time() * scene.gravity).norm();
     watchWalls(boundary, scene, view, seen);
+    if (10 * simulation.frame() > 9 * last) rest.see(view);
   }
   energy.finish(seen);
   const RunStatistics& run = simulation.statistics();
@@ -65,10 +88,8 @@ Observed observe(const Scene& scene, double until, int threads) {
   seen.worstError = run.densityErrorMax;
   const FrameView view = simulation.view();
   if (!view.info.errors.empty()) seen.meanError = view.info.errors.back().mean;
-  double squares = 0;
-  for (const Float4& v : view.velocities) squares += v.xyz().cast<double>().squaredNorm();
   seen.particles = view.positions.size();
-  seen.rmsSpeed = std::sqrt(squares / std::max<double>(1, static_cast<double>(seen.particles)));
+  rest.finish(seen);
   seen.steps = run.steps;
   if (simulation.stopped()) seen.stopped = simulation.time();
   seen.divided = run.steps > simulation.frame() * scene.solver.substeps;
@@ -95,7 +116,7 @@ std::vector<std::string> violations(const HardCase& expected, const Observed& se
   most("speed (m/s)", seen.maxSpeed, expected.speed);
   most("mean density error at the end", seen.meanError, expected.meanError);
   most("largest density error", seen.worstError, expected.worstError);
-  if (expected.rmsSpeed >= 0) most("rms speed at the end (m/s)", seen.rmsSpeed, expected.rmsSpeed);
+  if (expected.rmsSpeed >= 0) most("rms speed in the last tenth (m/s)", seen.rmsSpeed, expected.rmsSpeed);
   most("depth of the lowest particle (m)", -seen.lowest, -expected.lowest);
   // Without walls nothing but gravity changes the momentum.
   if (seen.particles > 0 && !std::isfinite(seen.nearest))
@@ -141,7 +162,7 @@ std::string outcome(const HardCase& expected, const Observed& seen) {
   if (!(seen.meanError <= expected.meanError)) say() << "mean density error " << seen.meanError;
   if (!(seen.worstError <= expected.worstError)) say() << "density error " << seen.worstError;
   if (expected.rmsSpeed >= 0 && !(seen.rmsSpeed <= expected.rmsSpeed))
-    say() << "rms speed " << seen.rmsSpeed << " m/s at the end";
+    say() << "rms speed " << seen.rmsSpeed << " m/s in the last tenth";
   return text.tellp() > 0 ? text.str() : "holds";
 }
 

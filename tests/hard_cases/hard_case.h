@@ -27,7 +27,9 @@ struct Observed {
   double momentum = 0;    ///< change of momentum per mass that gravity does not explain (m/s)
   double meanError = 0;   ///< mean of max(rho/rho0 - 1, 0) at the end
   double worstError = 0;  ///< its largest at any time
-  double rmsSpeed = 0;    ///< at the end (m/s)
+  /// Root of the mean square over particles and the frames of the last tenth of the run (m/s), and by how
+  /// much that of single frames spreads about it: what trembles is judged by no chance moment.
+  double rmsSpeed = 0, rmsSpread = 0;
   double lowest = std::numeric_limits<double>::infinity();  ///< least coordinate y of a particle, ever (m)
   long steps = 0;
   double stopped = 0;    ///< when the run ended itself (s); 0: it did not
@@ -46,14 +48,14 @@ struct Fill {
 };
 
 struct HardCase {
-  std::string name;                        ///< of the case
-  std::string scene;                       ///< file in scenes/hard/ without its ending
-  double until = 0;                        ///< (s)
-  double speed = 0;                        ///< largest speed at any time (m/s)
-  double meanError = 0.01;                 ///< largest mean density error at the end
-  double worstError = 0.5;                 ///< largest density error at any time
-  double rmsSpeed = -1;                    ///< largest rms speed at the end (m/s); negative: still moving
-  double lowest = -1e9;                    ///< no particle is ever below (m)
+  std::string name;         ///< of the case
+  std::string scene;        ///< file in scenes/hard/ without its ending
+  double until = 0;         ///< (s)
+  double speed = 0;         ///< largest speed at any time (m/s)
+  double meanError = 0.01;  ///< largest mean density error at the end
+  double worstError = 0.5;  ///< largest density error at any time
+  double rmsSpeed = -1;     ///< largest rms speed in the last tenth (m/s); negative: still moving
+  double lowest = -1e9;     ///< no particle is ever below (m)
   double stopsAfter = 0, stopsBefore = 0;  ///< when the run ends itself (s); 0: it does not
   Fill fill;                               ///< of a part of the scene
   int copies = 1;                          ///< times that the scene's fluid is there

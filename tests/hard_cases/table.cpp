@@ -42,6 +42,7 @@ std::string rowOf(const HardCase& hardCase) {
   } else {
     row << std::setprecision(2) << seen.rmsSpeed;
   }
+  row << std::setprecision(1) << " ± " << seen.rmsSpread << std::setprecision(3);
   row << " | " << seen.penetration << " | " << seen.lost << " | " << joined(guardsOf(seen)) << " | "
       << withoutGuards(hardCase, seen.hash) << " | "
       << (faults.empty() ? "holds" : "**" + joined(faults) + "**") << " |\n";
@@ -61,7 +62,8 @@ with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run har
   what water of the height H lifts itself by. Further (g dt)²/2, which a particle that touches a wall may gain, and rounding.
   The program's own balance may be off from that by rounding, and where steps change their length by half a step's fall.
 - **Speed** is the largest of any particle at any time (m/s), **density** the mean and the largest of max(ρ/ρ₀ − 1, 0), the mean at
-  the end, **rest** the rms speed at the end (m/s), with a bound where the water has to be at rest.
+  the end, **rest** the rms speed over the last tenth of the run (m/s), ± how far single
+  frames spread about it, with a bound where the water has to be at rest.
 - No particle may be lost, and none may get past a wall. Without walls the momentum may change by gravity only, to 10⁻⁴.
 - Every case gives the same hash with 1 and 3 threads. The dam and those of few particles also hold with `product`, `copula`, `directions`, `mean` and
   `nearest`.
