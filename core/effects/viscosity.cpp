@@ -35,10 +35,10 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
       const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
       const Distances<PairVector> r = distances(d, pair.squared);
       const Components others = loadComponents(before, &list[k]);
-      const PairVector value = KernelVectors<Kernel>::shape(d, r);
-      x = hn::MulAdd(value, hn::Sub(others.x, vx), x);
-      y = hn::MulAdd(value, hn::Sub(others.y, vy), y);
-      z = hn::MulAdd(value, hn::Sub(others.z, vz), z);
+      const PairVector shape = KernelVectors<Kernel>::shape(d, r);
+      x = hn::MulAdd(shape, hn::Sub(others.x, vx), x);
+      y = hn::MulAdd(shape, hn::Sub(others.y, vy), y);
+      z = hn::MulAdd(shape, hn::Sub(others.z, vz), z);
     }
     return sumLanes(x, y, z, hn::Zero(d));
   };

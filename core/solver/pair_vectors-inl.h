@@ -135,7 +135,8 @@ struct PartingCentre {
 };
 
 /// Whether one of the pairs is on one point, where they need a direction: then all of a sum's components were
-/// divided by zero, and one stands for all.
+/// divided by zero, and one stands for all. Where no sum divides by the distance, such a pair adds nothing,
+/// and needs none.
 HWY_INLINE bool hasCoincident(const Float4& sums) {
   return !std::isfinite(sums.x);
 }
