@@ -8,12 +8,13 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 #include <CLI/CLI.hpp>
 
-#include "app/commands/command_registry.h"
-#include "core/base/error.h"
-#include "core/scene/nearest_name.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 
@@ -40,22 +41,43 @@ struct Declared {
   std::function<int(const CommonOptions&)> run;
 };
 
-void addCommonOptions(CLI::App& parser, CommonWords& words) {
-  parser
-      .add_option("--set", words.overrides,
-                  "Changes the scene: /json/pointer=VALUE, with a JSON value or a bare word. Repeatable.")
-      ->type_name("/POINTER=VALUE")
-      ->allow_extra_args(false)
-      ->group("Every command");
-  parser.add_option("--threads", words.threads, "Threads to use; 0 takes what the machine has.")
-      ->type_name("N")
-      ->check(CLI::Range(0, kMostThreads))
-      ->default_str("0")
-      ->group("Every command");
-  parser.add_flag("--quiet", words.quiet, "No progress.")->group("Every command");
+std::vector<Option> commonOptions(CommonWords& words) {
+  const std::string group = "Every command";
+  return {{.name = "--set",
+           .target = &words.overrides,
+           .value = "/POINTER=VALUE",
+           .help = "Changes the scene: /json/pointer=VALUE, with a JSON value or a bare word. Repeatable.",
+           .oneValueEach = true,
+           .group = group},
+          {.name = "--threads",
+           .target = &words.threads,
+           .value = "N",
+           .help = "Threads to use; 0 takes what the machine has.",
+           .range = {{0, kMostThreads}},
+           .shownDefault = "0",
+           .group = group},
+          {.name = "--quiet", .target = &words.quiet, .help = "No progress.", .group = group}};
 }
 
-CommonOptions commonOptions(const CommonWords& words) {
+void addOption(CLI::App& parser, const Option& option) {
+  CLI::Option* const added = std::visit(
+      [&]<class T>(T* target) {
+        if constexpr (std::is_same_v<T, bool>)
+          return parser.add_flag(option.name, *target, option.help);
+        else
+          return parser.add_option(option.name, *target, option.help);
+      },
+      option.target);
+  if (!option.value.empty()) added->type_name(option.value);
+  if (option.required) added->required();
+  if (option.oneValueEach) added->allow_extra_args(false);
+  if (option.range) added->check(CLI::Range((*option.range)[0], (*option.range)[1]));
+  if (!option.shownDefault.empty()) added->default_str(option.shownDefault);
+  for (const std::string& other : option.excludes) added->excludes(parser.get_option(other));
+  if (!option.group.empty()) added->group(option.group);
+}
+
+CommonOptions parsedOptions(const CommonWords& words) {
   CommonOptions options;
   std::vector<Fault> faults;
   for (const std::string& word : words.overrides) {
@@ -96,10 +118,11 @@ int parseAndRun(std::vector<std::string> arguments) {
   std::vector<Declared> declared;
   for (const Command& command : commands) {
     CLI::App* const parser = program.add_subcommand(command.name, command.summary);
-    declared.push_back({parser, command.setUp(*parser)});
-    addCommonOptions(*parser, words);
-    const std::string own = parser->get_footer() == program.get_footer() ? "" : parser->get_footer() + "\n\n";
-    parser->footer(own + kExitCodes);
+    Declaration own = command.declare();
+    for (const Option& option : own.options) addOption(*parser, option);
+    for (const Option& option : commonOptions(words)) addOption(*parser, option);
+    parser->footer((own.footer.empty() ? "" : own.footer + "\n\n") + kExitCodes);
+    declared.push_back({parser, std::move(own.run)});
   }
 
   if (arguments.empty()) arguments.emplace_back("view");
@@ -116,7 +139,7 @@ int parseAndRun(std::vector<std::string> arguments) {
   }
   const auto chosen = std::find_if(declared.begin(), declared.end(),
                                    [](const Declared& command) { return command.parser->parsed(); });
-  return chosen->run(commonOptions(words));
+  return chosen->run(parsedOptions(words));
 }
 
 /// What was printed may still be in memory, and may not fit where it goes, or nobody may read it any more.
@@ -174,6 +197,11 @@ int runCommandLine(std::vector<std::string> arguments) {
     if (code == kDone) code = ofPrinting;  // what else went wrong has been told, and is more
   }
   return code;
+}
+
+std::vector<Command> allCommands() {
+  return {viewCommand(),    renderCommand(), simulateCommand(), checkCommand(), gammaCommand(),
+          summaryCommand(), slimCommand(),   studyCommand(),    schemaCommand()};
 }
 
 }  // namespace migiwa

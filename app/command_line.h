@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/command.h"
+
 namespace migiwa {
 
 /// Runs the program: `arguments` are those after its name; without any, the window opens. Reports failures on
@@ -13,5 +15,9 @@ int runCommandLine(std::vector<std::string> arguments);
 
 /// Reports a failure on the standard error stream and returns its ExitCode.
 int exitCodeOf(std::exception_ptr failure);
+
+// The commands of the program, in the order of --help.
+
+std::vector<Command> allCommands();
 
 }  // namespace migiwa

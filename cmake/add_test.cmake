@@ -1,9 +1,10 @@
-# migiwa_add_test(NAME SOURCES file... LABELS label... [LINK library...] [TIMEOUT seconds])
+# migiwa_add_test(NAME SOURCES file... LABELS label... [LONG regex] [LINK library...] [TIMEOUT seconds])
 #
 # One GoogleTest program over migiwa_core, every TEST of it known to ctest by its own name. Labels say what a test
 # needs: unit (core only, short), accuracy (compares with slow quadratures), simulation (runs a scene), hard (a case of
 # scenes/hard), golden (states to the last bit), render (a picture: needs EGL), window (needs a display), threads (worth
-# running under the thread sanitizer). The target tests_LABEL builds all programs with that label.
+# running under the thread sanitizer). The target tests_LABEL builds all programs with that label. Tests whose names
+# match LONG have the label long, too: ./run test leaves them to ./run check.
 include(GoogleTest)
 find_package(GTest REQUIRED)
 
@@ -19,7 +20,7 @@ migiwa_target_options(migiwa_test_headers)
 target_precompile_headers(migiwa_test_headers PRIVATE <gtest/gtest.h> ${migiwa_common_headers}
   "${PROJECT_SOURCE_DIR}/core/scene/scene.h" "${PROJECT_SOURCE_DIR}/core/simulation/simulation.h")
 
-# Reads them in the files of a test program.
+# Reads them in the files of a test program, whose own code is not what takes time.
 function(migiwa_reuse_test_headers name)
   target_precompile_headers(${name} REUSE_FROM migiwa_test_headers)
   get_target_property(sources ${name} SOURCES)
@@ -28,7 +29,7 @@ function(migiwa_reuse_test_headers name)
 endfunction()
 
 function(migiwa_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LABELS;LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;LONG" "SOURCES;LABELS;LINK")
   if(NOT arg_SOURCES OR NOT arg_LABELS OR arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "migiwa_add_test(${name}): expected SOURCES and LABELS, found '${ARGN}'")
   endif()
@@ -49,8 +50,18 @@ function(migiwa_add_test name)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
     TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "MIGIWA_CACHE=${migiwa_test_cache}" FIXTURES_REQUIRED test_cache)
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
-  file(WRITE ${labels_file}
-    "foreach(test IN LISTS ${name}_list)\n  set_tests_properties(\${test} PROPERTIES LABELS \"${arg_LABELS}\")\nendforeach()\n")
+  if(NOT arg_LONG)
+    set(arg_LONG "^$")
+  endif()
+  file(CONFIGURE OUTPUT ${labels_file} @ONLY CONTENT [=[
+foreach(test IN LISTS @name@_list)
+  if(test MATCHES "@arg_LONG@")
+    set_tests_properties(${test} PROPERTIES LABELS "@arg_LABELS@;long")
+  else()
+    set_tests_properties(${test} PROPERTIES LABELS "@arg_LABELS@")
+  endif()
+endforeach()
+]=])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
 
   foreach(label IN LISTS arg_LABELS)

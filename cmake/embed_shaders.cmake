@@ -1,5 +1,5 @@
-# Writes OUTPUT, a C++ source that holds every file of SHADERS as a string (app/render/shader_source.h).
-set(text "// Generated from shaders/ by cmake/embed_shaders.cmake.\n#include \"app/render/shader_source.h\"\n\n")
+# Writes OUTPUT, a C++ source that holds every file of SHADERS as a string (app/render/gl.h).
+set(text "// Generated from shaders/ by cmake/embed_shaders.cmake.\n#include \"app/render/gl.h\"\n\n")
 string(APPEND text "namespace migiwa {\n\nstd::span<const EmbeddedShader> embeddedShaders() {\n")
 string(APPEND text "  static constexpr EmbeddedShader kShaders[] = {\n")
 foreach(shader IN LISTS SHADERS)

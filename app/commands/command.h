@@ -1,16 +1,22 @@
-// A command of the program. A command is one file that defines it and one line in command_registry.cpp.
+// A command of the program: one file that defines it, and one line in app/command_line.cpp. Below, what
+// commands share.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
-#include "core/scene/scene_reader.h"
-
-namespace CLI {
-class App;
-}
+#include "core/base/messages.h"
+#include "core/io/report.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 
@@ -24,12 +30,37 @@ struct CommonOptions {
   bool quiet = false;               ///< --quiet: no progress
 };
 
+/// Where the value of an option goes; a bool is a flag. What is optional stays empty where the option is left
+/// out.
+using OptionTarget = std::variant<bool*, int*, std::string*, std::vector<std::string>*, std::optional<int>*,
+                                  std::optional<long>*, std::optional<double>*>;
+
+/// An option of a command, as --help shows it.
+struct Option {
+  std::string name{};  ///< such as "--until"; without dashes it is given by its position
+  OptionTarget target{};
+  std::string value{};  ///< what stands for the value in --help, such as "S"
+  std::string help{};
+  bool required = false;
+  bool oneValueEach = false;                   ///< of a list: each --name takes one
+  std::optional<std::array<long, 2>> range{};  ///< least and largest value
+  std::string shownDefault{};
+  std::vector<std::string> excludes{};  ///< names of options before it that it cannot stand beside
+  std::string group{};                  ///< a heading of --help
+};
+
+/// A command's own options, and what to run once they are parsed: it returns an ExitCode and throws
+/// InputError or MissingError.
+struct Declaration {
+  std::vector<Option> options;
+  std::function<int(const CommonOptions&)> run;
+  std::string footer{};  ///< of --help
+};
+
 struct Command {
   std::string name;
   std::string summary;  ///< one line for --help
-  /// Declares the command's own options and returns what to run once they are parsed; that returns an
-  /// ExitCode and throws InputError or MissingError.
-  std::function<std::function<int(const CommonOptions&)>(CLI::App&)> setUp;
+  std::function<Declaration()> declare;
 };
 
 Command viewCommand();
@@ -41,5 +72,73 @@ Command summaryCommand();
 Command slimCommand();
 Command studyCommand();
 Command schemaCommand();
+
+// Option values that are lists or pairs, read from their text. Faults name the option.
+
+/// `0,0.5,1`: times in s, sorted, each once. Throws InputError.
+std::vector<double> parseTimes(const std::string& text, std::string_view option);
+/// `1280x720`: width and height in pixels. Throws InputError.
+std::array<int, 2> parseSize(const std::string& text, std::string_view option);
+/// `/json/pointer=a,b,c`: one override for each value; commas inside brackets and quotes part nothing. Throws
+/// InputError.
+std::vector<Override> parseVariants(const std::string& text, std::string_view option);
+
+// One line on a terminal that tells how far a run is: time, speed, time left. Nothing where there is no
+// terminal.
+
+class ProgressBar {
+ public:
+  /// `from` and `until` are the simulated times (s) at the start and at the end. Silent when `quiet`, or when
+  /// the standard error stream goes to a file.
+  ProgressBar(double from, double until, bool quiet);
+  /// Wipes the line, so that nothing of it stays between the messages around it.
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// `time` (s) is reached. Draws at most ten times a second.
+  void update(double time);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double from_, until_;
+  bool shown_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point drawn_ = start_;
+};
+
+// Reports side by side, for a person to read.
+
+/// An aligned table: a row for each measure with its unit, a column for each report. `labels` head the
+/// columns; without them there is no heading.
+std::string reportTable(const std::vector<Report>& reports, const std::vector<std::string>& labels = {});
+
+// What a command was given may be wrong in several places: all of them are reported, not the first alone.
+
+class FaultCollector {
+ public:
+  /// Runs a part of the checks; its faults are kept, and the next part runs all the same.
+  template <class Body>
+  void operator()(const Body& body) {
+    try {
+      body();
+    } catch (const InputError& error) {
+      for (const Fault& fault : error.faults()) add(fault);
+    }
+  }
+  /// Keeps a fault, unless it is known already: a scene that is read twice has each of its own twice.
+  void add(const Fault& fault) {
+    const auto same = [&](const Fault& known) { return known.text() == fault.text(); };
+    if (std::none_of(faults_.begin(), faults_.end(), same)) faults_.push_back(fault);
+  }
+  /// Throws all that were kept as one error, if there are any.
+  void raise() {
+    if (!faults_.empty()) throw InputError(std::move(faults_));
+  }
+
+ private:
+  std::vector<Fault> faults_;
+};
 
 }  // namespace migiwa

@@ -7,14 +7,12 @@
 #include <memory>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
-
 #include "app/commands/command.h"
-#include "app/commands/gamma_plot.h"
-#include "core/base/error.h"
+#include "app/commands/plots.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
 #include "core/base/parallel.h"
-#include "core/boundary/handling.h"
-#include "core/io/output_file.h"
+#include "core/gamma/gamma_method.h"
 #include "core/io/points_csv.h"
 
 namespace migiwa {
@@ -105,14 +103,14 @@ MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
   if (!options.window.empty()) {
     const char* at = options.window.data();
     const char* const end = at + options.window.size();
-    bool sound = true;
-    for (std::size_t k = 0; k < corners.size() && sound; ++k) {
+    bool valid = true;
+    for (std::size_t k = 0; k < corners.size() && valid; ++k) {
       const auto [next, error] = std::from_chars(at, end, corners[k]);
-      sound = error == std::errc() && kCoordinateRange.contains(corners[k]) &&
+      valid = error == std::errc() && kCoordinateRange.contains(corners[k]) &&
               (k + 1 < corners.size() ? next != end && *next == ',' : next == end);
       at = next + 1;
     }
-    if (!sound || corners[0] >= corners[2] || corners[1] >= corners[3])
+    if (!valid || corners[0] >= corners[2] || corners[1] >= corners[3])
       throw InputError("--window", "expected x0,y0,x1,y1 in m, the lower left corner first, found '" +
                                        options.window + "'");
   }
@@ -252,24 +250,35 @@ int gamma(const GammaOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command gammaCommand() {
-  return {
-      "gamma", "Evaluates gamma at points, or maps it and its error on a cut.", [](CLI::App& parser) {
-        const auto options = std::make_shared<GammaOptions>();
-        parser.add_option("scene", options->scene, "The scene file.")->required()->type_name("SCENE");
-        parser
-            .add_option("--points", options->points, "Points to evaluate at: CSV with the columns x,y,z (m).")
-            ->type_name("IN.csv");
-        parser.add_option("--out", options->out, "Their gamma, its gradient (1/m) and the distance (m).")
-            ->type_name("OUT.csv");
-        parser
-            .add_option("--map", options->map,
-                        "Writes a map of gamma and its error on the scene's cut, as CSV and PNG.")
-            ->type_name("DIR");
-        parser.add_option("--window", options->window, "What the map shows, in m; left out: the whole cut.")
-            ->type_name("X0,Y0,X1,Y1");
-        parser.add_flag("--all-methods", options->allMethods, "Maps the error of every method side by side.");
-        return [options](const CommonOptions& common) { return gamma(*options, common); };
-      }};
+  return {"gamma", "Evaluates gamma at points, or maps it and its error on a cut.", [] {
+            const auto options = std::make_shared<GammaOptions>();
+            return Declaration{
+                {{.name = "scene",
+                  .target = &options->scene,
+                  .value = "SCENE",
+                  .help = "The scene file.",
+                  .required = true},
+                 {.name = "--points",
+                  .target = &options->points,
+                  .value = "IN.csv",
+                  .help = "Points to evaluate at: CSV with the columns x,y,z (m)."},
+                 {.name = "--out",
+                  .target = &options->out,
+                  .value = "OUT.csv",
+                  .help = "Their gamma, its gradient (1/m) and the distance (m)."},
+                 {.name = "--map",
+                  .target = &options->map,
+                  .value = "DIR",
+                  .help = "Writes a map of gamma and its error on the scene's cut, as CSV and PNG."},
+                 {.name = "--window",
+                  .target = &options->window,
+                  .value = "X0,Y0,X1,Y1",
+                  .help = "What the map shows, in m; left out: the whole cut."},
+                 {.name = "--all-methods",
+                  .target = &options->allMethods,
+                  .help = "Maps the error of every method side by side."}},
+                [options](const CommonOptions& common) { return gamma(*options, common); }};
+          }};
 }
 
 }  // namespace migiwa

@@ -1,24 +1,45 @@
-// `migiwa simulate SCENE`: runs without any picture.
+// What `migiwa simulate` was asked for, looked at and understood before anything is simulated or written.
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <sstream>
-
-#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/progress_bar.h"
-#include "app/commands/report_table.h"
-#include "app/commands/simulate_job.h"
-#include "core/base/error.h"
-#include "core/io/export_schedule.h"
-#include "core/io/output_file.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
 #include "core/io/particle_export.h"
 #include "core/io/report.h"
 #include "core/io/save_file.h"
-#include "core/simulation/run.h"
+#include "core/scene/scene.h"
+#include "core/simulation/measures.h"
+#include "core/simulation/simulation.h"
 
 namespace migiwa {
+
+struct SimulateOptions {
+  std::string scene;
+  std::optional<double> until;  ///< (s)
+  std::string report;
+  std::string exportFolder, format, fields;
+  std::optional<double> every;  ///< (s)
+  std::string save, resume;
+  std::optional<double> saveEvery;  ///< (s)
+};
+
+struct SimulateJob {
+  Scene scene;
+  ParticleFormat format;            ///< of the export, if there is one
+  std::vector<std::string> fields;  ///< of the export
+};
+
+/// Throws InputError with every fault found.
+SimulateJob checkedSimulateJob(const SimulateOptions& options, const CommonOptions& common);
+
+// `migiwa simulate SCENE`: runs without any picture.
 
 namespace {
 
@@ -131,65 +152,187 @@ class SimulateRun {
   std::unique_ptr<ParticleExport> export_;
 };
 
-void addExportOptions(CLI::App& parser, SimulateOptions& options) {
-  parser
-      .add_option("--export", options.exportFolder,
-                  "Folder for files of the particles, NAME_000000.ply and so on, and their list "
-                  "NAME.ply.json.")
-      ->type_name("DIR")
-      ->group("Export");
-  parser
-      .add_option("--every", options.every,
-                  "Simulated time from one exported file to the next, in s; start and end are exported, too.")
-      ->type_name("S")
-      ->group("Export");
-  parser
-      .add_option("--format", options.format,
-                  "ply, vtk (with NAME.vtk.series for ParaView) or obj (positions only); left out: ply.")
-      ->type_name("ply|vtk|obj")
-      ->group("Export");
-  std::string names;
+std::vector<Option> ownOptions(SimulateOptions& options) {
+  std::string fields;
   for (const ParticleFieldInfo& info : particleFields())
-    names += (names.empty() ? "" : ", ") + std::string(info.name);
-  parser
-      .add_option("--fields", options.fields,
-                  "What is exported with each position, with commas between: " + names +
-                      "; left out: velocity,density,id.")
-      ->type_name("A,B,...")
-      ->group("Export");
-}
-
-void addSaveOptions(CLI::App& parser, SimulateOptions& options) {
-  parser.add_option("--save", options.save, "Saves the state at the end there, to go on with --resume.")
-      ->type_name("FILE")
-      ->group("Save and resume");
-  parser
-      .add_option("--save-every", options.saveEvery,
-                  "Saves on the way, too: simulated time from one save to the next, in s.")
-      ->type_name("S")
-      ->group("Save and resume");
-  parser.add_option("--resume", options.resume, "Goes on from a save of the same scene and settings.")
-      ->type_name("FILE")
-      ->group("Save and resume");
+    fields += (fields.empty() ? "" : ", ") + std::string(info.name);
+  const std::string exports = "Export", saves = "Save and resume";
+  return {
+      {.name = "scene", .target = &options.scene, .value = "SCENE", .help = "Scene file.", .required = true},
+      {.name = "--until",
+       .target = &options.until,
+       .value = "S",
+       .help = "Simulated time at the end, in s; left out: the scene's."},
+      {.name = "--report",
+       .target = &options.report,
+       .value = "FILE",
+       .help = "Writes a report there; left out: prints a short one."},
+      {.name = "--export",
+       .target = &options.exportFolder,
+       .value = "DIR",
+       .help = "Folder for files of the particles, NAME_000000.ply and so on, and their list NAME.ply.json.",
+       .group = exports},
+      {.name = "--every",
+       .target = &options.every,
+       .value = "S",
+       .help = "Simulated time from one exported file to the next, in s; start and end are exported, too.",
+       .group = exports},
+      {.name = "--format",
+       .target = &options.format,
+       .value = "ply|vtk|obj",
+       .help = "ply, vtk (with NAME.vtk.series for ParaView) or obj (positions only); left out: ply.",
+       .group = exports},
+      {.name = "--fields",
+       .target = &options.fields,
+       .value = "A,B,...",
+       .help = "What is exported with each position, with commas between: " + fields +
+               "; left out: velocity,density,id.",
+       .group = exports},
+      {.name = "--save",
+       .target = &options.save,
+       .value = "FILE",
+       .help = "Saves the state at the end there, to go on with --resume.",
+       .group = saves},
+      {.name = "--save-every",
+       .target = &options.saveEvery,
+       .value = "S",
+       .help = "Saves on the way, too: simulated time from one save to the next, in s.",
+       .group = saves},
+      {.name = "--resume",
+       .target = &options.resume,
+       .value = "FILE",
+       .help = "Goes on from a save of the same scene and settings.",
+       .group = saves}};
 }
 
 }  // namespace
 
 Command simulateCommand() {
-  return {
-      "simulate", "Runs a scene without pictures and reports what happened.", [](CLI::App& parser) {
-        const auto options = std::make_shared<SimulateOptions>();
-        parser.add_option("scene", options->scene, "Scene file.")->required()->type_name("SCENE");
-        parser
-            .add_option("--until", options->until, "Simulated time at the end, in s; left out: the scene's.")
-            ->type_name("S");
-        parser
-            .add_option("--report", options->report, "Writes a report there; left out: prints a short one.")
-            ->type_name("FILE");
-        addExportOptions(parser, *options);
-        addSaveOptions(parser, *options);
-        return [options](const CommonOptions& common) { return SimulateRun(*options, common).run(); };
-      }};
+  return {"simulate", "Runs a scene without pictures and reports what happened.", [] {
+            const auto options = std::make_shared<SimulateOptions>();
+            return Declaration{ownOptions(*options), [options](const CommonOptions& common) {
+                                 return SimulateRun(*options, common).run();
+                               }};
+          }};
+}
+
+namespace {
+
+constexpr double kLongestRun = 1e6;  // (s), as long as a scene's duration can be
+
+class JobReader {
+ public:
+  JobReader(const SimulateOptions& options, const CommonOptions& common)
+      : options_(options), common_(common) {}
+
+  SimulateJob read() {
+    std::optional<Scene> scene;
+    collect([&] {
+      scene = readScene(options_.scene, common_.overrides);
+      requireSteppable(scene->boundary, scene->file);
+    });
+    seconds("--until", options_.until, Range::closed(0, kLongestRun));
+    if (scene && options_.until && Range::closed(0, kLongestRun).contains(*options_.until))
+      collect([&] { requireReachable(*scene, *options_.until, "--until"); });
+    writable("--report", options_.report);
+    readExport(scene ? scene->stem() : "");
+    seconds("--save-every", options_.saveEvery, Range::positive(kLongestRun));
+    needs("--save-every", options_.saveEvery.has_value(), "--save FILE", !options_.save.empty());
+    writable("--save", options_.save);
+    if (!faults_.empty()) throw InputError(std::move(faults_));
+    return {*std::move(scene), *format_, fields_};
+  }
+
+ private:
+  template <class Body>
+  void collect(const Body& body) {
+    try {
+      body();
+    } catch (const InputError& error) {
+      faults_.insert(faults_.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+
+  void seconds(const char* option, const std::optional<double>& value, const Range& range) {
+    if (!value || range.contains(*value)) return;
+    std::ostringstream message;
+    message << "expected a number " << range.text() << " (unit: s), found " << *value;
+    faults_.push_back({option, message.str()});
+  }
+
+  void needs(const char* option, bool given, const std::string& other, bool otherGiven) {
+    if (given && !otherGiven) faults_.push_back({option, "expected " + other + " with it, found none"});
+  }
+
+  void writable(const char* option, const std::string& file) {
+    if (!file.empty()) collect([&] { requireWritable(file, option); });
+  }
+
+  void readExport(const std::string& stem) {
+    const std::string& folder = options_.exportFolder;
+    readFormat();
+    readFields();
+    seconds("--every", options_.every, Range::positive(kLongestRun));
+    needs("--every", options_.every.has_value(), "--export DIR", !folder.empty());
+    needs("--format", !options_.format.empty(), "--export DIR", !folder.empty());
+    needs("--fields", !options_.fields.empty(), "--export DIR", !folder.empty());
+    if (folder.empty()) return;
+    needs("--export", true, "--every S", options_.every.has_value());
+    std::error_code ignored;
+    if (std::filesystem::is_directory(folder, ignored) && format_) {
+      writable("--export", (std::filesystem::path(folder) / exportListName(stem, *format_)).string());
+    } else if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
+      faults_.push_back({"--export", "expected a folder, found the file " + folder});
+    }
+  }
+
+  void readFormat() {
+    std::vector<std::string_view> names;
+    for (const ParticleFormat& format : particleFormats()) {
+      names.push_back(format.name);
+      if (options_.format.empty() ? names.size() == 1 : format.name == options_.format) format_ = format;
+    }
+    if (!format_)
+      faults_.push_back(
+          {"--format", "expected one of " + quotedList(names) + ", found \"" + options_.format + "\""});
+  }
+
+  void readFields() {
+    if (format_ && !format_->holdsFields) {
+      if (!options_.fields.empty())
+        faults_.push_back({"--fields", "expected none with --format " + std::string(format_->name) +
+                                           ", which holds positions only; ply and vtk hold fields"});
+      return;
+    }
+    if (options_.fields.empty()) {
+      fields_ = {"velocity", "density", "id"};
+      return;
+    }
+    std::vector<std::string_view> names;
+    for (const ParticleFieldInfo& info : particleFields()) names.push_back(info.name);
+    std::istringstream words(options_.fields + ",");
+    for (std::string word; std::getline(words, word, ',');) {
+      if (std::find(names.begin(), names.end(), word) == names.end()) {
+        faults_.push_back({"--fields", "expected some of " + quotedList(names) + ", found \"" + word + "\""});
+      } else if (std::find(fields_.begin(), fields_.end(), word) != fields_.end()) {
+        faults_.push_back({"--fields", "expected each field once, found \"" + word + "\" again"});
+      } else {
+        fields_.push_back(word);
+      }
+    }
+  }
+
+  const SimulateOptions& options_;
+  const CommonOptions& common_;
+  std::vector<Fault> faults_;
+  std::optional<ParticleFormat> format_;
+  std::vector<std::string> fields_;
+};
+
+}  // namespace
+
+SimulateJob checkedSimulateJob(const SimulateOptions& options, const CommonOptions& common) {
+  return JobReader(options, common).read();
 }
 
 }  // namespace migiwa

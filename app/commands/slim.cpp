@@ -1,4 +1,5 @@
 // `migiwa slim MESH --out FILE.json`: fits a SLIM surface to a mesh or an oriented point cloud, and draws it.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -6,16 +7,19 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include "app/commands/command.h"
-#include "app/commands/fault_collector.h"
-#include "app/commands/slim_picture.h"
-#include "app/render/png.h"
-#include "core/base/error.h"
-#include "core/io/output_file.h"
-#include "core/slim/slim_file.h"
+#include "app/commands/plots.h"
+#include "app/platform/context.h"
+#include "app/render/image.h"
+#include "app/render/renderer.h"
+#include "app/ui/ui.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/scene/scene.h"
+#include "core/slim/file.h"
+#include "core/walls/slim_wall.h"
 
 namespace migiwa {
 
@@ -98,31 +102,106 @@ int fit(const SlimOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command slimCommand() {
-  return {"slim", "Fits a SLIM surface to a mesh or to points with normals.", [](CLI::App& parser) {
-            const auto options = std::make_shared<SlimOptions>();
-            parser
-                .add_option("mesh", options->mesh, "OBJ, PLY, STL, ...: triangles, or points with normals.")
-                ->required()
-                ->type_name("MESH");
-            parser
-                .add_option("--out", options->out,
-                            "Where the surface goes; a picture of it, FILE.png, beside it.")
-                ->required()
-                ->type_name("FILE.json");
-            parser.add_option("--degree", options->degree, "Degree of the polynomials.")
-                ->check(CLI::Range(1, kLargestSlimDegree))
-                ->default_str("2")
-                ->type_name("1|2|3");
-            const auto tolerance = parser.add_option("--tolerance", options->tolerance,
-                                                     "Largest distance of a polynomial to the input, in the "
-                                                     "file's unit; left out: a thousandth of the diagonal.");
-            tolerance->type_name("M");
-            parser.add_option("--nodes", options->nodes, "Fits about so many nodes instead.")
-                ->check(CLI::Range(10, 5'000'000))
-                ->excludes(tolerance)
-                ->type_name("N");
-            return [options](const CommonOptions& common) { return fit(*options, common); };
-          }};
+  return {
+      "slim", "Fits a SLIM surface to a mesh or to points with normals.", [] {
+        const auto options = std::make_shared<SlimOptions>();
+        return Declaration{
+            {{.name = "mesh",
+              .target = &options->mesh,
+              .value = "MESH",
+              .help = "OBJ, PLY, STL, ...: triangles, or points with normals.",
+              .required = true},
+             {.name = "--out",
+              .target = &options->out,
+              .value = "FILE.json",
+              .help = "Where the surface goes; a picture of it, FILE.png, beside it.",
+              .required = true},
+             {.name = "--degree",
+              .target = &options->degree,
+              .value = "1|2|3",
+              .help = "Degree of the polynomials.",
+              .range = {{1, kLargestSlimDegree}},
+              .shownDefault = "2"},
+             {.name = "--tolerance",
+              .target = &options->tolerance,
+              .value = "M",
+              .help =
+                  "Largest distance of a polynomial to the input, in the file's unit; left out: a thousandth "
+                  "of the diagonal."},
+             {.name = "--nodes",
+              .target = &options->nodes,
+              .value = "N",
+              .help = "Fits about so many nodes instead.",
+              .range = {{10, 5'000'000}},
+              .excludes = {"--tolerance"}}},
+            [options](const CommonOptions& common) { return fit(*options, common); }};
+      }};
+}
+
+namespace {
+
+constexpr int kWidth = 800, kHeight = 720;
+constexpr int kGutter = 6;  ///< between the halves (pixels)
+
+/// The default camera leaves room for whatever moves around a scene; a shape alone is looked at from nearer.
+Camera cameraFor(const Bounds& bounds) {
+  constexpr double kNearer = 0.85;
+  Camera camera = defaultCamera(bounds, -Vec3d::UnitY());
+  camera.eye = camera.target + kNearer * (camera.eye - camera.target);
+  return camera;
+}
+
+Caption surfaceCaption(const SlimData& data) {
+  const SlimStatistics& statistics = data.statistics;
+  return {statistics.source,
+          {{"nodes", groupedDigits(data.nodes.size())},
+           {"degree", std::to_string(data.degree)},
+           {"largest distance", formatNumber("%.3g m", statistics.largest)},
+           {"mean distance", formatNumber("%.3g m", statistics.mean)}}};
+}
+
+Caption nodesCaption(const SlimData& data) {
+  const auto [least, most] =
+      std::minmax_element(data.nodes.begin(), data.nodes.end(),
+                          [](const SlimNode& a, const SlimNode& b) { return a.radius < b.radius; });
+  return {"Its balls, each as a disc as wide as its core",
+          {{"smallest radius", formatNumber("%.3g m", static_cast<double>(least->radius))},
+           {"largest radius", formatNumber("%.3g m", static_cast<double>(most->radius))}}};
+}
+
+}  // namespace
+
+Image drawSlim(const SlimData& data, ThreadPool& pool) {
+  const auto context = makeEglContext();
+  const auto wall = std::make_shared<SlimWallData>();
+  wall->model = std::make_unique<const SlimModel>(data.nodes, data.degree, data.closed, pool);
+  const SlimSurface surface(wall, SlimSurface::Fluid::outside);
+  Surroundings surroundings;
+  surroundings.walls.meshes.push_back(surface.mesh());
+  surface.drawnNodes(surroundings.walls.nodes);
+  surroundings.bounds = surroundings.walls.meshes.front().surface.bounds();
+  Renderer renderer(surroundings, makeColorMap());
+  Ui ui(1);
+  const RenderTarget target(kWidth, kHeight);
+  const FrameSnapshot nothing;
+  Shot shot;
+  shot.camera = cameraFor(surroundings.bounds);
+  shot.scene = {0, 0, kWidth, kHeight};
+
+  Image picture(2 * kWidth + kGutter, kHeight);
+  std::fill(picture.rgba.begin(), picture.rgba.end(), std::uint8_t{255});
+  for (const bool nodes : {false, true}) {
+    shot.nodes = nodes;
+    target.beginScene();
+    renderer.draw(nothing.view(), shot, target);
+    target.beginOverlay();
+    ui.begin(kWidth, kHeight, InputState{});
+    ui.caption(nodes ? nodesCaption(data) : surfaceCaption(data), shot.scene);
+    if (nodes) ui.legend(NodePass::legend(), renderer.nodes().range(), makeWarmColorMap(), shot.scene);
+    ui.end(true);
+    picture.paste(target.read(), nodes ? kWidth + kGutter : 0, 0);
+  }
+  return picture;
 }
 
 }  // namespace migiwa

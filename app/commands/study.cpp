@@ -1,26 +1,45 @@
-// `migiwa study SCENE --vary /pointer=a,b,c --out DIR`: what accuracy costs in time.
+// What `migiwa study` was asked for, looked at and understood before anything is simulated or written.
+#include "core/study/study.h"
+
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <set>
-
-#include <CLI/CLI.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/progress_bar.h"
-#include "app/commands/study_convergence.h"
-#include "app/commands/study_job.h"
-#include "app/commands/study_plot.h"
-#include "app/commands/study_profiles.h"
-#include "app/commands/study_summary.h"
-#include "core/base/error.h"
+#include "app/commands/plots.h"
+#include "core/base/fields.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
 #include "core/base/parallel.h"
-#include "core/io/output_file.h"
-#include "core/study/run_record.h"
-#include "core/study/study_run.h"
-#include "core/study/table.h"
+#include "core/scene/scene.h"
+#include "core/simulation/simulation.h"
 
 namespace migiwa {
+
+struct StudyOptions {
+  std::string scene, out;
+  std::vector<std::string> vary, merge;
+  std::optional<double> until;  ///< (s)
+  int repeat = 3;
+  bool list = false;
+  std::optional<long> run;
+};
+
+struct StudyJob {
+  StudyPlan plan;
+  std::filesystem::path folder;
+};
+
+/// Throws InputError with every fault found.
+StudyJob checkedStudyJob(const StudyOptions& options, const CommonOptions& common);
+
+// `migiwa study SCENE --vary /pointer=a,b,c --out DIR`: what accuracy costs in time.
 
 namespace {
 
@@ -190,40 +209,143 @@ class Study {
 
 Command studyCommand() {
   return {
-      "study", "Shows what accuracy costs in time: a grid of runs, measured.", [](CLI::App& parser) {
+      "study", "Shows what accuracy costs in time: a grid of runs, measured.", [] {
         const auto options = std::make_shared<StudyOptions>();
-        parser.add_option("scene", options->scene, "Scene file.")->required()->type_name("SCENE");
-        parser
-            .add_option("--vary", options->vary,
-                        "Values of a key of the scene, with commas between; repeatable: all "
-                        "combinations are run.")
-            ->required()
-            ->allow_extra_args(false)
-            ->type_name("/POINTER=A,B,...");
-        parser
-            .add_option("--until", options->until,
-                        "Simulated time at the end of each run, in s; left out: the scene's.")
-            ->type_name("S");
-        parser
-            .add_option("--out", options->out,
-                        "Folder for study.csv, summary.md, the pictures and runs/K.json. What is there "
-                        "of this study already is not run again.")
-            ->required()
-            ->type_name("DIR");
-        parser.add_option("--repeat", options->repeat, "How often each run is timed; left out: 3.")
-            ->type_name("N");
-        CLI::Option* const list =
-            parser.add_flag("--list", options->list, "Prints the runs with their numbers, runs none.");
-        CLI::Option* const one =
-            parser.add_option("--run", options->run, "Does one run and writes its runs/K.json, no table.")
-                ->type_name("K")
-                ->excludes(list);
-        parser.add_option("--merge", options->merge, "Joins the runs in these folders, simulates nothing.")
-            ->type_name("DIR...")
-            ->excludes(list)
-            ->excludes(one);
-        return [options](const CommonOptions& common) { return Study(*options, common).run(); };
+        return Declaration{
+            {{.name = "scene",
+              .target = &options->scene,
+              .value = "SCENE",
+              .help = "Scene file.",
+              .required = true},
+             {.name = "--vary",
+              .target = &options->vary,
+              .value = "/POINTER=A,B,...",
+              .help =
+                  "Values of a key of the scene, with commas between; repeatable: all combinations are run.",
+              .required = true,
+              .oneValueEach = true},
+             {.name = "--until",
+              .target = &options->until,
+              .value = "S",
+              .help = "Simulated time at the end of each run, in s; left out: the scene's."},
+             {.name = "--out",
+              .target = &options->out,
+              .value = "DIR",
+              .help = "Folder for study.csv, summary.md, the pictures and runs/K.json. What is there of this "
+                      "study "
+                      "already is not run again.",
+              .required = true},
+             {.name = "--repeat",
+              .target = &options->repeat,
+              .value = "N",
+              .help = "How often each run is timed; left out: 3."},
+             {.name = "--list",
+              .target = &options->list,
+              .help = "Prints the runs with their numbers, runs none."},
+             {.name = "--run",
+              .target = &options->run,
+              .value = "K",
+              .help = "Does one run and writes its runs/K.json, no table.",
+              .excludes = {"--list"}},
+             {.name = "--merge",
+              .target = &options->merge,
+              .value = "DIR...",
+              .help = "Joins the runs in these folders, simulates nothing.",
+              .excludes = {"--list", "--run"}}},
+            [options](const CommonOptions& common) { return Study(*options, common).run(); }};
       }};
+}
+
+namespace {
+
+constexpr double kLongestRun = 1e6;  // (s), as long as a scene's duration can be
+constexpr std::size_t kMostRuns = 10000;
+constexpr int kMostRepeats = 100;
+
+/// One --vary; faults at the option.
+StudyAxis readAxis(const std::string& text, FaultCollector& collect) {
+  StudyAxis axis;
+  collect([&] {
+    for (const Override& variant : parseVariants(text, "--vary")) {
+      axis.pointer = variant.pointer;
+      if (variant.value.empty())
+        throw InputError("--vary",
+                         "expected values with commas between them, found an empty one in \"" + text + "\"");
+      if (std::find(axis.values.begin(), axis.values.end(), variant.value) != axis.values.end())
+        throw InputError("--vary",
+                         "expected each value once, found " + variant.value + " again in \"" + text + "\"");
+      const auto parts = [](const std::string& whole) { return std::count(whole.begin(), whole.end(), ':'); };
+      if (axis.pointer.find(':') != std::string::npos && parts(variant.value) > parts(axis.pointer))
+        throw InputError("--vary",
+                         "expected at most as many parts as pointers, with colons between them, "
+                         "found \"" +
+                             variant.value + "\" for " + axis.pointer);
+      axis.values.push_back(variant.value);
+    }
+  });
+  return axis;
+}
+
+void requireFolder(const std::filesystem::path& folder) {
+  std::filesystem::path there = std::filesystem::absolute(folder);
+  std::error_code ignored;
+  while (!std::filesystem::exists(there, ignored) && there.has_relative_path()) there = there.parent_path();
+  if (!std::filesystem::is_directory(there, ignored))
+    throw InputError("--out", "expected a folder, found the file " + there.string());
+  requireWritable(there / "study.csv", "--out");
+}
+
+template <class Number>
+void requireRange(FaultCollector& collect, const char* option, Number value, bool good,
+                  const std::string& expected) {
+  if (good) return;
+  std::ostringstream message;
+  message << "expected " << expected << ", found " << value;
+  collect.add({option, message.str()});
+}
+
+}  // namespace
+
+StudyJob checkedStudyJob(const StudyOptions& options, const CommonOptions& common) {
+  FaultCollector collect;
+  StudyJob job{{options.scene, common.overrides, {}, 0}, options.out};
+  StudyPlan& plan = job.plan;
+  for (const std::string& text : options.vary) {
+    StudyAxis axis = readAxis(text, collect);
+    const auto same = [&](const StudyAxis& known) { return known.pointer == axis.pointer; };
+    if (axis.values.empty()) continue;
+    if (std::any_of(plan.axes.begin(), plan.axes.end(), same)) {
+      collect.add({"--vary", "expected each pointer once, found " + axis.pointer + " again"});
+    } else {
+      plan.axes.push_back(std::move(axis));
+    }
+  }
+  if (options.until)
+    requireRange(collect, "--until", *options.until, Range::positive(kLongestRun).contains(*options.until),
+                 "a number " + Range::positive(kLongestRun).text() + " (unit: s)");
+  requireRange(collect, "--repeat", options.repeat, options.repeat >= 1 && options.repeat <= kMostRepeats,
+               "a whole number in [1, " + std::to_string(kMostRepeats) + "]");
+  const std::size_t size = plan.size();
+  requireRange(collect, "--vary", size, size <= kMostRuns,
+               "at most " + std::to_string(kMostRuns) + " runs in all");
+  if (options.run && size <= kMostRuns)
+    requireRange(collect, "--run", *options.run, *options.run >= 1 && *options.run <= static_cast<long>(size),
+                 "the number of a run in [1, " + std::to_string(size) + "] (--list shows them)");
+  collect([&] { requireFolder(job.folder); });
+  if (size <= kMostRuns) {
+    std::optional<double> duration;
+    for (std::size_t run = 1; run <= size; ++run)
+      collect([&] {
+        const Scene scene = readScene(plan.scene, plan.overrides(run));
+        requireSteppable(scene.boundary, scene.file);
+        if (!duration) duration = scene.duration;
+        if (options.until || scene.duration != *duration)
+          requireReachable(scene, options.until.value_or(*duration), options.until ? "--until" : "--vary");
+      });
+    plan.until = options.until.value_or(duration.value_or(0));
+  }
+  collect.raise();
+  return job;
 }
 
 }  // namespace migiwa

@@ -1,5 +1,6 @@
 // EGL is included here and nowhere else.
-#include "app/platform/egl_context.h"
+#include "app/platform/context.h"
+#include "core/base/messages.h"
 
 #define EGL_NO_X11
 #include <array>
@@ -9,8 +10,8 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include "app/platform/gl_api.h"
-#include "core/base/error.h"
+#include "app/platform/context.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {
@@ -96,6 +97,21 @@ std::unique_ptr<GlContext> makeEglContext() {
   throw MissingError(
       "no EGL device here can draw OpenGL 4.5 without a display; "
       "on Debian: apt-get install libegl1 libgl1-mesa-dri");
+}
+
+void loadGl(GlProcLoader loader) {
+  const int version = gladLoadGL(loader);
+  if (version < GLAD_MAKE_VERSION(4, 5)) {
+    throw MissingError("OpenGL 4.5 is needed, and this machine's driver offers " +
+                       std::to_string(GLAD_VERSION_MAJOR(version)) + "." +
+                       std::to_string(GLAD_VERSION_MINOR(version)) +
+                       "; on Debian: apt-get install libgl1-mesa-dri");
+  }
+}
+
+std::string describeGl() {
+  const auto text = [](GLenum name) { return std::string(reinterpret_cast<const char*>(glGetString(name))); };
+  return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
 }  // namespace migiwa

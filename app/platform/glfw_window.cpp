@@ -1,5 +1,5 @@
 // GLFW is included here and nowhere else.
-#include "app/platform/glfw_window.h"
+#include "app/platform/context.h"
 
 #define GLFW_INCLUDE_NONE
 #include <algorithm>
@@ -7,8 +7,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/platform/gl_api.h"
-#include "core/base/error.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

@@ -1,11 +1,18 @@
-// A picture in memory.
+// Pictures: in memory, as PNG, as what is drawn into, and the colours of fields.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "app/render/gl.h"
+
 namespace migiwa {
+
+// A picture in memory.
 
 /// Eight bits a channel, rows from the top.
 struct Image {
@@ -26,5 +33,61 @@ struct Image {
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4;
   }
 };
+
+// Pictures as PNG; the same picture always gives the same bytes.
+
+/// The bytes of a PNG file.
+std::string encodePng(const Image& image);
+
+// The framebuffer that every picture is drawn into, in a window and without one, so that both give the same
+// bytes: four samples a pixel, resolved to a texture that text and panels are then drawn over.
+
+inline constexpr int kSamples = 4;
+
+class RenderTarget {
+ public:
+  RenderTarget(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Binds the multisampled buffer and clears it.
+  void beginScene() const;
+  /// Resolves it and binds the result.
+  void beginOverlay() const;
+  /// The finished picture, opaque.
+  Image read() const;
+  /// Depth in [0, 1] at a pixel counted from the top left; nothing where nothing was drawn.
+  std::optional<float> depthAt(int x, int y) const;
+  /// Copies the finished picture to the current window's framebuffer.
+  void copyToWindow(int windowWidth, int windowHeight) const;
+
+ private:
+  int width_, height_;
+  GlRenderbuffer sceneColor_, sceneDepth_, depth_;
+  GlTexture color_;
+  GlFramebuffer scene_, result_;
+};
+
+// Our colour maps. Of particles: dark blue, teal, green, yellow. Built in Oklab (Ottosson 2020) so that equal
+// steps of the value look equally far apart: lightness rises linearly, and the path through the colour plane
+// is walked at constant speed. Of SLIM nodes: the same from plum over red and orange to a pale yellow, so
+// that it is never taken for the particles'.
+
+inline constexpr int kColorMapSize = 256;
+using Rgb8 = std::array<std::uint8_t, 3>;
+/// sRGB-encoded colours from the low end to the high end.
+using ColorMap = std::array<Rgb8, kColorMapSize>;
+
+/// Oklab lightness of the two ends.
+inline constexpr double kColorMapDarkest = 0.32;
+inline constexpr double kColorMapLightest = 0.92;
+
+ColorMap makeColorMap();
+ColorMap makeWarmColorMap();
+
+// A colour map as a texture that interpolates between its entries in linear light.
+
+GlTexture makeColorTexture(const ColorMap& colors);
 
 }  // namespace migiwa

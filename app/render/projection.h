@@ -1,9 +1,11 @@
-// Where the camera sees what: matrices for OpenGL, and the rectangle of the picture that shows the scene.
+// The camera: what it sees where on the picture, and how the mouse moves it.
 #pragma once
 
 #include "core/scene/scene.h"
 
 namespace migiwa {
+
+// Where the camera sees what: matrices for OpenGL, and the rectangle of the picture that shows the scene.
 
 /// Pixels, origin in the top left corner.
 struct Rect {
@@ -24,5 +26,16 @@ Vec3d cameraRight(const Camera& camera);
 /// The camera's vertical field of view holds for the whole picture. Where panels leave only `scene` of it,
 /// everything is drawn smaller, so that it still shows what the whole picture would.
 Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene);
+
+// What dragging and scrolling do to a camera. Lengths are metres, angles radians.
+
+/// Turns the eye around the target: about the up axis, then up or down, never over the poles.
+void orbit(Camera& camera, double right, double up);
+/// Moves eye and target together in the picture's plane.
+void pan(Camera& camera, double right, double up);
+/// Multiplies the distance to the target.
+void zoom(Camera& camera, double factor);
+/// Turns towards a point and makes it the new target; the eye stays.
+void lookAt(Camera& camera, const Vec3d& point);
 
 }  // namespace migiwa

@@ -3,18 +3,16 @@
 // for its whole life.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "app/render/ground_pass.h"
-#include "app/render/line_pass.h"
-#include "app/render/node_pass.h"
+#include "app/render/image.h"
+#include "app/render/passes.h"
 #include "app/render/projection.h"
-#include "app/render/render_target.h"
-#include "app/render/sphere_pass.h"
-#include "app/render/surface_pass.h"
 #include "core/simulation/frame_view.h"
+#include "core/walls/surface.h"
 
 namespace migiwa {
 
@@ -67,5 +65,22 @@ class Renderer {
   std::vector<float> values_;
   std::vector<Float4> spheres_, shownPatches_;
 };
+
+// What every shader knows of a frame: shaders/frame.glsl declares the same block.
+
+struct FrameUniforms {
+  Mat4f view, clip;
+  std::array<float, 4> eye;        ///< world (m)
+  std::array<float, 4> up;         ///< world, unit
+  std::array<float, 4> clipPlane;  ///< normal towards the camera and offset: cut away where n.p > offset
+  std::array<float, 4> viewport;   ///< x, y from the bottom left, width, height (pixels)
+  std::array<float, 8> samples;    ///< sample places relative to the pixel's centre (pixels)
+};
+static_assert(sizeof(FrameUniforms) == 224);
+
+// Where a plane across an axis cuts surfaces: the outline of the cut.
+
+/// Segments at `at` (m) on the axis with number `axis`.
+std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at);
 
 }  // namespace migiwa

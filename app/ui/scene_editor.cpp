@@ -1,13 +1,11 @@
-#include "app/ui/scene_editor.h"
-
 #include <algorithm>
 
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "app/render/projection.h"
-#include "app/ui/fonts.h"
-#include "app/ui/theme.h"
+#include "app/session/ui_state.h"
 #include "app/ui/widgets.h"
 
 namespace migiwa {
@@ -61,6 +59,16 @@ void drawLines(const SceneEditor& editor, ImVec2 origin, float lineHeight, float
   }
 }
 
+/// Gives the text of several lines that comes next the keyboard.
+void focusText([[maybe_unused]] const char* name) {
+#if IMGUI_VERSION_NUM >= 19000
+  // There SetKeyboardFocusHere() does not reach a text of several lines.
+  ImGui::ActivateItemByID(ImGui::GetID(name));
+#else
+  ImGui::SetKeyboardFocusHere();
+#endif
+}
+
 /// The text is as high as its lines, inside a part that scrolls, so that lines and their numbers move as one.
 void textWithLines(SceneEditor& editor, float height, ImFont* mono) {
   ImGui::PushStyleColor(ImGuiCol_ChildBg, theme::kWell);
@@ -77,8 +85,8 @@ void textWithLines(SceneEditor& editor, float height, ImFont* mono) {
   const float needed = static_cast<float>(count + 1) * lineHeight + 2 * padding;
   const ImVec2 size{ImGui::GetContentRegionAvail().x, std::max(needed, ImGui::GetContentRegionAvail().y)};
   const int before = editor.caretLine;
-  if (editor.wantsFocus) ImGui::SetKeyboardFocusHere();
   ImGui::PushID(editor.generation);
+  if (editor.wantsFocus) focusText("##text");
   ImGui::PushStyleColor(ImGuiCol_FrameBg, IM_COL32_BLACK_TRANS);
   ImGui::InputTextMultiline("##text", &editor.text, size,
                             ImGuiInputTextFlags_CallbackAlways | ImGuiInputTextFlags_AllowTabInput, onCaret,

@@ -1,17 +1,34 @@
-// Text and panels over the picture, through one ImGui context. The same calls serve a window and an
-// off-screen run; all that differs is the input. Draws into the framebuffer that is bound.
+// Text and panels over the picture.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "app/platform/input_state.h"
-#include "app/render/color_map.h"
+#include "app/platform/context.h"
+#include "app/render/image.h"
 #include "app/render/projection.h"
-#include "app/ui/caption.h"
-#include "app/ui/panel_model.h"
+#include "app/session/ui_state.h"
+#include "core/base/parallel.h"
 
 namespace migiwa {
+
+// The lines in a corner of every picture: what it shows, and when.
+
+struct Fonts;
+
+struct Caption {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> rows;  ///< label and value
+};
+
+/// Draws it in the top left corner of `area`.
+void drawCaption(const Caption& caption, const Rect& area, const Fonts& fonts);
+
+// Text and panels over the picture, through one ImGui context. The same calls serve a window and an
+// off-screen run; all that differs is the input. Draws into the framebuffer that is bound.
 
 class Ui {
  public:
@@ -43,5 +60,24 @@ class Ui {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+// Where the time of the last frames went: stages stacked over time.
+
+class StageHistory {
+ public:
+  static constexpr std::size_t kFrames = 240;
+
+  /// Takes in a frame; one that has been taken in before (`steps` as before) counts once.
+  void add(long steps, const StageTimes& times);
+  const std::deque<StageTimes>& frames() const { return frames_; }
+
+ private:
+  std::deque<StageTimes> frames_;
+  long steps_ = -1;
+};
+
+/// Milliseconds a frame over the last frames, in the colours of the stage bar. Fills the width of the current
+/// ImGui window.
+void stageChart(const StageHistory& history, float height);
 
 }  // namespace migiwa

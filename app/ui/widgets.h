@@ -1,13 +1,24 @@
-// Small pieces that the panels share.
+// The pieces that panels are made of: rows, charts, colours and fonts.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include <imgui.h>
 
+#include "app/render/image.h"
+#include "app/render/projection.h"
+#include "app/session/ui_state.h"
+#include "core/base/parallel.h"
+#include "core/scene/scene.h"
+#include "core/simulation/frame_view.h"
+#include "core/simulation/statistics.h"
+
 namespace migiwa {
+
+// Small pieces that the panels share.
 
 /// A scene key as a label: "surface_tension" is "Surface tension".
 std::string titleOf(std::string_view key);
@@ -22,5 +33,99 @@ bool logSlider(const char* id, double& value, double low, double high, const cha
 void faintText(std::string_view text);
 /// `count` buttons side by side: the width of each.
 float buttonWidth(int count);
+
+// Rows of settings that several panels have. Each returns whether the user changed something.
+
+/// How walls are handled, and the method of gamma.
+bool wallRows(BoundaryParameters& boundary);
+bool maxIterationsRow(SolverParameters& solver);
+bool toleranceRow(SolverParameters& solver);
+
+// The program's panels, one file each. They are drawn one under the other in the current ImGui window.
+
+/// Needs the model's editor.
+void scenePanel(PanelModel& model);
+void simulationPanel(PanelModel& model);
+void boundaryPanel(PanelModel& model);
+void solverPanel(PanelModel& model);
+/// Of one effect among the settings'.
+void effectPanel(PanelModel& model, NamedEffect& effect);
+void viewPanel(PanelModel& model);
+/// Needs the model's whatIf.
+void whatIfPanel(PanelModel& model);
+void performancePanel(PanelModel& model);
+/// Energies over the run, against what was given.
+void energyPanel(PanelModel& model);
+
+// The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
+
+struct Fonts {
+  ImFont* regular = nullptr;
+  ImFont* bold = nullptr;
+  ImFont* mono = nullptr;
+};
+
+/// Adds them to the current ImGui context's atlas. Throws MissingError with the package to install.
+Fonts loadFonts(float pixels);
+
+// What the colours mean: name and unit of the quantity, the colour map, and numbers beside it.
+
+/// Of a legend and the margin below it (pixels).
+int legendHeight(const Fonts& fonts);
+
+/// Draws it in the bottom right corner of `area`.
+void drawLegend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
+                const Rect& area, const Fonts& fonts);
+
+// What the panels' plots have in common.
+
+/// A grid line at the height y from `left` to `right` (pixels), with its label to the left of it.
+void gridLine(ImDrawList* draw, float left, float right, float y, const std::string& label);
+
+// Where the time of a frame went: one bar of stages, and under it their names and milliseconds.
+
+/// The colour of the i-th stage.
+ImU32 stageColor(std::size_t i);
+
+/// `timings` false draws the stages without their times, which differ from run to run.
+void stageBar(const StageTimes& times, bool timings);
+
+// Accuracy against time: a point for each setting that was tried.
+
+/// Density error (%) over milliseconds a step, both logarithmic; points bear their number from 1, and the
+/// Pareto front is drawn through those that no other beats in both. Fills the width of the current ImGui
+/// window.
+void costChart(std::span<const WhatIfPoint> points, float height);
+
+// The energy of the fluid over the run, against what was given to it.
+
+/// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
+/// Heights count from the energy of the start.
+void energyPlot(std::span<const EnergySample> samples, float height);
+
+// How the density error falls from iteration to iteration of the last step.
+
+/// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
+void errorPlot(std::span<const IterationError> errors, double tolerance, float height);
+
+// Colours and spacings of panels and of the text on pictures.
+
+namespace theme {
+inline constexpr ImU32 kInk = IM_COL32(24, 34, 46, 255);        ///< text on the picture
+inline constexpr ImU32 kFaintInk = IM_COL32(82, 97, 114, 255);  ///< its labels
+inline constexpr ImU32 kPaper = IM_COL32(250, 251, 252, 205);   ///< behind it
+inline constexpr ImU32 kPaperEdge = IM_COL32(60, 75, 95, 60);
+inline constexpr ImU32 kAlert = IM_COL32(255, 143, 115, 255);
+inline constexpr ImU32 kAccent = IM_COL32(71, 184, 172, 255);
+inline constexpr ImU32 kMotion = IM_COL32(233, 196, 106, 255);  ///< curves of what moves
+inline constexpr ImU32 kWell = IM_COL32(17, 22, 29, 255);       ///< behind plots and bars
+inline constexpr ImU32 kGridLine = IM_COL32(255, 255, 255, 28);
+}  // namespace theme
+
+/// Sets the current ImGui context's style for text of `pixels` height.
+void applyTheme(float pixels);
+
+/// Draws the editor's window over `area`, if it is open.
+void sceneEditorWindow(SceneEditor& editor, const Rect& area, const Fonts& fonts);
 
 }  // namespace migiwa

@@ -6,10 +6,9 @@
 
 #include <Eigen/LU>
 
-#include "app/ui/number_text.h"
-#include "app/ui/scene_editor.h"
-#include "app/viewer/camera_control.h"
-#include "app/viewer/reference_speed.h"
+#include "app/render/projection.h"
+#include "app/session/ui_state.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {
@@ -66,8 +65,8 @@ void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) 
   if (viewChanged) takeView();
 }
 
-Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
-                     int height) {
+UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
+                         int height) {
   if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
   const Rect area = ui_.sceneArea(width, height, view_.panels);
 
@@ -82,8 +81,8 @@ Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputSt
   }
 
   ui_.begin(width, height, input);
-  Wishes wishes = drawUi(frame, run, area);
-  if (!ui_.wantsKeyboard()) keys(input, run, wishes);
+  UiCommands commands = drawUi(frame, run, area);
+  if (!ui_.wantsKeyboard()) keys(input, run, commands);
   moveCamera(input, area);
   last_ = input;
 
@@ -93,7 +92,7 @@ Wishes Viewer::frame(const FrameView& frame, const RunStatus& run, const InputSt
   renderer_.draw(frame, shot, *target_);
   target_->beginOverlay();
   ui_.end(true);
-  return wishes;
+  return commands;
 }
 
 Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width, int height) {
@@ -102,8 +101,8 @@ Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width
   return picture();
 }
 
-Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {
-  Wishes wishes;
+UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {
+  UiCommands commands;
   history_.add(frame.info.steps, frame.info.stages);
   ui_.caption(caption(frame, run), area);
   ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
@@ -114,12 +113,12 @@ Wishes Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& 
     ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
   }
   if (view_.panels) {
-    PanelModel model{frame.info,     run,    options_.timings, scene_,          bounds_, settings_, view_,
-                     !nodes.empty(), wishes, options_.editor,  options_.whatIf, history_};
+    PanelModel model{frame.info,     run,      options_.timings, scene_,          bounds_, settings_, view_,
+                     !nodes.empty(), commands, options_.editor,  options_.whatIf, history_};
     ui_.panels(model, area.height);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
-  return wishes;
+  return commands;
 }
 
 Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
@@ -177,18 +176,18 @@ void Viewer::moveCamera(const InputState& input, const Rect& area) {
   if (free && input.wheel != 0) zoom(view_.camera, std::pow(0.9, static_cast<double>(input.wheel)));
 }
 
-void Viewer::keys(const InputState& input, const RunStatus& run, Wishes& wishes) {
+void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& commands) {
   const auto pressed = [&](Key key) { return input.down(key) && !last_.down(key); };
   if (input.control || input.alt) return;
-  if (pressed(Key::space)) (run.playing ? wishes.pause : wishes.play) = true;
-  if (pressed(Key::right)) wishes.step = true;
-  if (pressed(Key::r)) wishes.reset = true;
-  if (pressed(Key::p)) wishes.savePicture = true;
+  if (pressed(Key::space)) (run.playing ? commands.pause : commands.play) = true;
+  if (pressed(Key::right)) commands.step = true;
+  if (pressed(Key::r)) commands.reset = true;
+  if (pressed(Key::p)) commands.savePicture = true;
   if (pressed(Key::h)) view_.panels = !view_.panels;
   if (pressed(Key::c)) {
     BoundaryHandling& handling = settings_.boundary.handling;
     handling = handling == BoundaryHandling::gamma ? BoundaryHandling::none : BoundaryHandling::gamma;
-    wishes.settings = true;
+    commands.settings = true;
   }
 }
 
@@ -202,6 +201,16 @@ std::optional<Vec3d> Viewer::pointAt(int x, int y, const Rect& area) const {
   const Eigen::Matrix4d toScreen = (projection.clip * projection.view).cast<double>();
   const Eigen::Vector4d world = toScreen.inverse() * onScreen;
   return Vec3d(world.head<3>() / world.w());
+}
+
+double referenceSpeed(const Scene& scene) {
+  const Vec3d size = scene.bounds().size();
+  double speed = std::sqrt(2 * scene.gravity.cwiseAbs().dot(size));
+  for (const auto& source : scene.fluid) speed = std::max(speed, source->velocity.norm());
+  for (const Emitter& emitter : scene.emitters) speed = std::max(speed, emitter.mouthSpeed());
+  if (!(speed > 0) || !std::isfinite(speed)) return 1;
+  const double digit = std::pow(10, std::floor(std::log10(speed)));
+  return std::max(1.0, std::round(speed / digit)) * digit;
 }
 
 }  // namespace migiwa

@@ -1,18 +1,25 @@
-// One frame of the program: scene, text and panels, in a window and off-screen alike. Who calls it owns the
-// context, which must stay current, and decides when to stop.
+// The picture with its panels, and the window's loop.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/platform/input_state.h"
+#include "app/platform/context.h"
 #include "app/render/image.h"
 #include "app/render/renderer.h"
-#include "app/ui/stage_history.h"
+#include "app/session/session.h"
+#include "app/session/ui_state.h"
 #include "app/ui/ui.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
+
+// One frame of the program: scene, text and panels, in a window and off-screen alike. Who calls it owns the
+// context, which must stay current, and decides when to stop.
 
 struct ViewerOptions {
   double scale = 1;     ///< size of text and panels; 1 suits a picture 720 pixels high
@@ -38,7 +45,8 @@ class Viewer {
   void replaceScene(const Scene& scene, std::optional<WallDrawing> walls);
 
   /// Draws one frame and returns what the user asked for.
-  Wishes frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width, int height);
+  UiCommands frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
+                   int height);
   /// The picture of the last frame.
   Image picture() const { return target_->read(); }
   /// Draws a frame that nobody sees or touches; it depends on no earlier one.
@@ -56,9 +64,9 @@ class Viewer {
   std::array<double, 2> colorRange(ColorField field) const;
 
  private:
-  Wishes drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
+  UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
   void moveCamera(const InputState& input, const Rect& area);
-  void keys(const InputState& input, const RunStatus& run, Wishes& wishes);
+  void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
   void takeView();
   Caption caption(const FrameView& frame, const RunStatus& run) const;
@@ -78,5 +86,57 @@ class Viewer {
   bool draggingScene_ = false;
   double sinceClick_ = 0;
 };
+
+// The window's loop: input in, commands to the simulation's thread, one frame out.
+
+class Viewer;
+
+/// What the window shows at this moment.
+struct DrawnFrame {
+  const FrameView& frame;
+  const RunStatus& run;
+  const Viewer& viewer;
+};
+
+struct WindowOptions {
+  int threads = 0;
+  std::vector<Override> overrides;  ///< of the scene, for when its file is read again
+  bool playing = true;              ///< start at once
+  std::optional<long> frames;       ///< close after so many drawn frames
+  /// Keeps a picture that the user asked for; called on a thread of its own, for one picture after the other.
+  std::function<void(const Image&)> savePicture;
+  /// Told of each frame that has been drawn, on the window's thread.
+  std::function<void(const DrawnFrame&)> drawn{};
+};
+
+/// Opens a window on the scene and returns when it is closed. Throws MissingError where there is no display.
+void runWindow(const Scene& scene, const WindowOptions& options);
+
+// The speed that fills the colour map when pictures show speed.
+
+/// That of a fall from the top of the scene to its bottom, or of the fastest source, rounded to one digit
+/// (m/s).
+double referenceSpeed(const Scene& scene);
+
+// Between the window, the scene's file and what lies beside it, and the simulation that runs.
+
+/// An editor that holds the session's file.
+SceneEditor makeEditor(const SceneSession& session);
+
+/// Faults, or that the change has been taken over. A text that the user has changed stays as it is, whatever
+/// happens to the file.
+void tellEditor(const SceneChange& change, const SceneSession& session, SceneEditor& editor);
+
+/// Hands what the editor asks for to the session, which carries it out in the background.
+void applyRequest(SceneEditor& editor, SceneSession& session, const Settings& settings,
+                  const ViewState& view);
+
+/// Saves the simulation's state beside the scene's file, or goes on from it.
+void keepState(const UiCommands& commands, const SceneSession& session, SimulationThread& simulation);
+
+/// Shows the valid scene of a change: with its new simulation, which plays if the old one did, or by handing
+/// its parameters to the one that runs. The old simulation ends in the session's background.
+void applyChange(SceneChange& change, SceneSession& session, Viewer& viewer,
+                 std::unique_ptr<SimulationThread>& simulation);
 
 }  // namespace migiwa

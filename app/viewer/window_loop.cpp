@@ -1,16 +1,12 @@
-#include "app/viewer/window_loop.h"
-
 #include <algorithm>
 #include <chrono>
 #include <future>
 #include <iostream>
 #include <utility>
 
-#include "app/platform/glfw_window.h"
-#include "app/viewer/editing.h"
-#include "app/viewer/simulation_thread.h"
+#include "app/platform/context.h"
+#include "app/session/session.h"
 #include "app/viewer/viewer.h"
-#include "app/viewer/what_if_session.h"
 
 namespace migiwa {
 namespace {
@@ -24,12 +20,12 @@ constexpr int kFramesAfterInput = 3;
 /// How often files and readers are asked for news (s).
 constexpr double kBetweenLooks = 0.25;
 
-void carryOut(const Wishes& wishes, const Settings& settings, SimulationThread& simulation) {
-  if (wishes.settings) simulation.apply(settings);
-  if (wishes.reset) simulation.reset();
-  if (wishes.play) simulation.play();
-  if (wishes.pause) simulation.pause();
-  if (wishes.step) simulation.step();
+void applyRequest(const UiCommands& commands, const Settings& settings, SimulationThread& simulation) {
+  if (commands.settings) simulation.apply(settings);
+  if (commands.reset) simulation.reset();
+  if (commands.play) simulation.play();
+  if (commands.pause) simulation.pause();
+  if (commands.step) simulation.step();
 }
 
 /// Begins when the picture before it is kept, so that no two take the same name. An empty future: none was.
@@ -76,7 +72,7 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
         if (change->scene) trials.forget(whatIf, *simulation);
-        if (change->scene) takeOver(*change, session, viewer, simulation);
+        if (change->scene) applyChange(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
       }
@@ -93,20 +89,108 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
 
     const RunStatus run = simulation->status();
     const FrameView shown = frame.view();
-    const Wishes wishes = viewer.frame(shown, run, input, width, height);
+    const UiCommands commands = viewer.frame(shown, run, input, width, height);
     viewer.copyToWindow();
     window.swap();
     if (options.drawn) options.drawn({shown, run, viewer});
-    carryOut(wishes, viewer.settings(), *simulation);
+    applyRequest(commands, viewer.settings(), *simulation);
     simulation->watchPressure(viewer.view().color == ColorField::pressure);
-    keepState(wishes, session, *simulation);
-    carryOut(editor, session, viewer.settings(), viewer.view());
-    if (wishes.savePicture && options.savePicture)
+    keepState(commands, session, *simulation);
+    applyRequest(editor, session, viewer.settings(), viewer.view());
+    if (commands.savePicture && options.savePicture)
       saving = keepPicture(std::move(saving), options, viewer.picture());
     redraws = std::max(redraws - 1, 0);
     ++drawn;
   }
   if (saving.valid()) saving.get();
+}
+
+namespace {
+
+/// Messages say the place again where it is not a line of the text.
+void listFaults(const std::vector<TextFault>& faults, const SceneSession& session, SceneEditor& editor) {
+  editor.faults.clear();
+  const std::string own = session.file().string() + ":";
+  for (const TextFault& fault : faults) {
+    std::string message = fault.text();
+    if (fault.line > 0 && message.starts_with(own)) message.erase(0, own.size());
+    editor.faults.push_back({fault.line, std::move(message)});
+  }
+}
+
+std::string counted(std::size_t faults) {
+  return faults == 1 ? "1 fault" : std::to_string(faults) + " faults";
+}
+
+/// What the file holds now. A text that was changed since stays.
+void takeFileText(const std::string& text, bool edited, SceneEditor& editor) {
+  editor.known = text;
+  if (!edited) editor.replaceText(text);
+}
+
+/// What was typed since the wish stays.
+void takeSaved(const SaveRequest& saved, const SceneSession& session, SceneEditor& editor) {
+  takeFileText(session.fileText(), editor.text != saved.text, editor);
+  editor.fileName = session.file().filename().string();
+  if (editor.saveName == saved.name) editor.saveName = editor.fileName;
+}
+
+}  // namespace
+
+SceneEditor makeEditor(const SceneSession& session) {
+  SceneEditor editor;
+  editor.fileName = editor.saveName = session.file().filename().string();
+  editor.text = editor.known = session.fileText();
+  return editor;
+}
+
+void tellEditor(const SceneChange& change, const SceneSession& session, SceneEditor& editor) {
+  if (change.saved) takeSaved(*change.saved, session, editor);
+  if (change.fromFile() && change.fileText) takeFileText(*change.fileText, editor.edited(), editor);
+  listFaults(change.faults, session, editor);
+  if (change.source == SceneChange::Source::save && !change.saved) {
+    editor.note = "not saved: " + counted(change.faults.size());
+    return;
+  }
+  std::string source;
+  if (change.fromFile()) source = editor.fileName + " has changed: ";
+  if (change.saved) source = "saved as " + session.file().string() + ", ";
+  if (!change.faults.empty()) {
+    editor.note = source + counted(change.faults.size()) + ", the scene before it goes on";
+  } else {
+    editor.note = source + (change.simulation ? "taken over from the start" : "taken over");
+  }
+}
+
+void applyRequest(SceneEditor& editor, SceneSession& session, const Settings& settings,
+                  const ViewState& view) {
+  const bool revert = std::exchange(editor.revert, false);
+  if (revert) editor.replaceText(editor.known);
+  if (std::exchange(editor.apply, false) || revert) {
+    editor.note = "reading ...";
+    session.apply(editor.text);
+  }
+  if (std::exchange(editor.save, false)) {
+    editor.note = "saving ...";
+    session.saveAs({editor.saveName, editor.text, settings, view});
+  }
+}
+
+void keepState(const UiCommands& commands, const SceneSession& session, SimulationThread& simulation) {
+  if (commands.saveState) simulation.saveState(session.stateFile(), session.overrides());
+  if (commands.loadState) simulation.loadState(session.stateFile());
+}
+
+void applyChange(SceneChange& change, SceneSession& session, Viewer& viewer,
+                 std::unique_ptr<SimulationThread>& simulation) {
+  if (!change.simulation) {
+    viewer.replaceScene(*change.scene, std::nullopt);
+    return simulation->apply(viewer.settings());
+  }
+  const bool playing = simulation->status().playing;
+  session.retire(std::exchange(simulation, std::move(change.simulation)));
+  viewer.replaceScene(simulation->scene(), simulation->walls());
+  if (playing) simulation->play();
 }
 
 }  // namespace migiwa

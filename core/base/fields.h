@@ -10,14 +10,17 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "core/base/file_identity.h"
-#include "core/base/types.h"
+#include <Eigen/Core>
+
+#include "core/base/hash.h"
+#include "core/base/math.h"
 
 namespace migiwa {
 
@@ -120,7 +123,7 @@ class BasicFieldVisitor {
   }
   /// Whether these keys hold what was written: false after a fault in one of them. A check across several
   /// keys asks first, so that it never complains about a default that took the place of a faulty value.
-  virtual bool sound(std::initializer_list<std::string_view> keys) const {
+  virtual bool valid(std::initializer_list<std::string_view> keys) const {
     static_cast<void>(keys);
     return true;
   }
@@ -144,5 +147,78 @@ using FieldWriter = BasicFieldVisitor<Access::look>;
 /// `Part` as a visitor may have it: for lists of fields that both kinds of visitors go through.
 template <class Visitor, class Part>
 using Visited = typename Visitor::template Value<Part>;
+
+// The names of a registry's entries, for the scene keys that choose among them.
+
+/// `kEntries` is an array, in static storage, of structs with a member `name`.
+template <const auto& kEntries>
+std::span<const std::string_view> registryNames() {
+  static constexpr auto kNames = [] {
+    std::array<std::string_view, kEntries.size()> names;
+    for (std::size_t k = 0; k < names.size(); ++k) names[k] = kEntries[k].name;
+    return names;
+  }();
+  return kNames;
+}
+
+// A turn about an axis through something's centre, as scenes write it.
+
+/// The right-handed turn by an angle (rad) about a unit axis, after Rodrigues.
+inline Eigen::Matrix3d rotationAbout(const Vec3d& axis, double angle) {
+  const double sine = portable::sin(angle), cosine = portable::cos(angle);
+  Eigen::Matrix3d across;  // of the cross product with the axis
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return cosine * Eigen::Matrix3d::Identity() + sine * across + (1 - cosine) * (axis * axis.transpose());
+}
+
+struct Rotation {
+  Vec3d axis = Vec3d::UnitY();
+  double degrees = 0;
+
+  template <class Visitor>
+  static void describe(Visitor& visitor, Visited<Visitor, Rotation>& self) {
+    visitor.vector("axis", self.axis,
+                   {"1", "Axis through the centre; any length but zero.", Presence::required});
+    visitor.number("degrees", self.degrees, Range::closed(-360, 360),
+                   {"degrees", "Angle of the turn, right-handed.", Presence::required});
+    if constexpr (Visitor::kChanges) {
+      if (self.axis.norm() >= 1e-12) return;
+      visitor.fault("axis", "expected a vector that is not zero, found [0, 0, 0]");
+      self.axis = Vec3d::UnitY();
+    }
+  }
+  Eigen::Matrix3d matrix() const {
+    if (degrees == 0) return Eigen::Matrix3d::Identity();
+    return rotationAbout(axis.normalized(), degrees * std::numbers::pi / 180);
+  }
+};
+
+// Where a shape from a file stands in a scene: scaled, then turned about the origin, then moved.
+
+struct Transform {
+  double scale = 1;
+  Rotation rotate;
+  Vec3d translate = Vec3d::Zero();  ///< (m)
+
+  bool operator==(const Transform& other) const {
+    return scale == other.scale && rotate.axis == other.rotate.axis &&
+           rotate.degrees == other.rotate.degrees && translate == other.translate;
+  }
+  template <class Visitor>
+  static void describe(Visitor& visitor, Visited<Visitor, Transform>& self) {
+    visitor.number("scale", self.scale, Range::closed(1e-9, 1e6),
+                   {"1", "Factor on all lengths of the file: metres per its unit."});
+    visitor.object("rotate",
+                   {"", "Turns it about the origin; a file whose z axis is up needs [1, 0, 0] and -90."},
+                   [&](auto& fields) { Rotation::describe(fields, self.rotate); });
+    visitor.vector("translate", self.translate, {"m", "Moves it, at last."});
+  }
+  Vec3f point(const Vec3f& p) const {
+    return (rotate.matrix() * (scale * p.cast<double>()) + translate).cast<float>();
+  }
+  Vec3f direction(const Vec3f& n) const {
+    return (rotate.matrix() * n.cast<double>()).normalized().cast<float>();
+  }
+};
 
 }  // namespace migiwa

@@ -4,6 +4,10 @@
 #include <exception>
 #include <system_error>
 
+#include <pthread.h>
+
+#include "core/base/files.h"
+
 namespace migiwa {
 
 namespace {
@@ -36,11 +40,24 @@ std::uint32_t leftOf(std::uint64_t tickets) {
   return static_cast<std::uint32_t>(tickets);
 }
 
+/// So many that their stacks leave half of the memory, or of the addresses that the process may have, to the
+/// rest.
+double threadsThatFit() {
+  pthread_attr_t attributes;
+  std::size_t stack = 0;
+  if (pthread_attr_init(&attributes) == 0) {
+    pthread_attr_getstacksize(&attributes, &stack);
+    pthread_attr_destroy(&attributes);
+  }
+  constexpr double kMost = 1e6;
+  return stack > 0 ? std::min(0.5 * availableMemory() / static_cast<double>(stack), kMost) : kMost;
+}
+
 }  // namespace
 
 ThreadPool::ThreadPool(int threads) {
   if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  threads = std::min(threads, 256);
+  threads = std::clamp(threads, 1, std::clamp(static_cast<int>(threadsThatFit()), 1, 256));
   try {
     for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
   } catch (const std::system_error&) {

@@ -6,11 +6,14 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -76,5 +79,46 @@ T parallelReduce(ThreadPool& pool, std::size_t n, T initial, const Body& body, c
   for (const T& part : parts) total = fold(total, part);
   return total;
 }
+
+// Wall time of named stages, in the order in which they first ran. A stage that never ran has no entry.
+
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+};
+
+class StageTimes {
+ public:
+  void add(std::string_view name, double seconds) {
+    for (StageTime& stage : stages_) {
+      if (stage.name == name) {
+        stage.seconds += seconds;
+        return;
+      }
+    }
+    stages_.push_back({std::string(name), seconds});
+  }
+  void add(const StageTimes& other) {
+    for (const StageTime& stage : other.stages_) add(stage.name, stage.seconds);
+  }
+  double seconds(std::string_view name) const {
+    for (const StageTime& stage : stages_)
+      if (stage.name == name) return stage.seconds;
+    return 0;
+  }
+  const std::vector<StageTime>& stages() const { return stages_; }
+  void clear() { stages_.clear(); }
+
+  /// Runs `body` and books its wall time under `name`.
+  template <class Body>
+  void time(std::string_view name, const Body& body) {
+    const auto start = std::chrono::steady_clock::now();
+    body();
+    add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+
+ private:
+  std::vector<StageTime> stages_;
+};
 
 }  // namespace migiwa

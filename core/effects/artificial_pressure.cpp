@@ -3,14 +3,14 @@
 // where the density alone does not, at free surfaces above all. A pass of its own beside the position step's.
 // Deviation: k is a compression, so that its strength depends neither on the spacing nor on the kernel.
 #include "core/effects/effects.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/artificial_pressure.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/solver/pair_vectors-inl.h"
+#include "core/solver/pairs_simd-inl.h"
 
 #ifndef MIGIWA_ARTIFICIAL_PRESSURE_TYPES
 #define MIGIWA_ARTIFICIAL_PRESSURE_TYPES

@@ -1,9 +1,9 @@
-// The effects that effect_registry.cpp lists, one file each.
+// The effects that effects.cpp lists, one file each.
 #pragma once
 
 #include <memory>
 
-#include "core/effects/effect.h"
+#include "core/solver/effect.h"
 
 namespace migiwa {
 

@@ -9,14 +9,14 @@
 #include <numbers>
 
 #include "core/effects/effects.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/surface_tension.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/solver/pair_vectors-inl.h"
+#include "core/solver/pairs_simd-inl.h"
 
 #ifndef MIGIWA_SURFACE_TENSION_TYPES
 #define MIGIWA_SURFACE_TENSION_TYPES

@@ -8,14 +8,14 @@
 #include <cmath>
 
 #include "core/effects/effects.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/viscosity.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/solver/pair_vectors-inl.h"
+#include "core/solver/pairs_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {

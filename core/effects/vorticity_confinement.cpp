@@ -6,7 +6,7 @@
 #include <Eigen/QR>
 
 #include "core/effects/effects.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 #include "core/sph/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -14,7 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "core/solver/pair_vectors-inl.h"
+#include "core/solver/pairs_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {

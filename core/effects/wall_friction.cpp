@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "core/effects/effects.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 
 namespace migiwa {
 

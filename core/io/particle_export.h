@@ -1,20 +1,87 @@
-// A sequence of particle files, written by a thread of its own while the simulation goes on: NAME_000000.ply
-// and so on, and NAME.ply.json, which lists them with their times and hashes. Each file is whole or not
-// there, and the list names only files that are.
+// Particles in files for other programs.
 #pragma once
 
+#include <array>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
-#include "core/io/particle_format.h"
+#include "core/simulation/frame_view.h"
 
 namespace migiwa {
+
+// The particles of one frame on their way to a file: positions and the chosen fields, in the order of the
+// ids, so that a line of two files is the same particle as long as none came or went.
+
+using FloatTriple = std::array<float, 3>;
+
+/// One field of all particles.
+struct ParticleField {
+  enum class Kind { vectors, numbers, integers };
+  std::string_view name;
+  Kind kind = Kind::numbers;
+  // The one that the kind names has the values.
+  std::vector<FloatTriple> vectors;
+  std::vector<float> numbers;
+  std::vector<std::uint32_t> integers;
+};
+
+/// What can be written of a particle beside its position. An entry in the list of these is all that a field
+/// takes.
+struct ParticleFieldInfo {
+  std::string_view name;  ///< as asked for, and as in the files
+  std::string_view unit;
+  std::string_view meaning;
+  ParticleField::Kind kind;
+  void (*copy)(const FrameView& view, ParticleField& out);
+};
+std::span<const ParticleFieldInfo> particleFields();
+
+struct ParticleFrame {
+  double time = 0;  ///< (s)
+  long frame = 0;   ///< number of the frame in the run
+  std::uint64_t stateHash = 0;
+  std::vector<FloatTriple> positions;  ///< (m)
+  std::vector<ParticleField> fields;
+  std::vector<std::uint32_t> ids;
+
+  /// Brings the particles into the order of their ids.
+  void sortById();
+};
+
+/// A copy of a simulation's view with the named fields, in the view's order.
+ParticleFrame copyParticles(const FrameView& view, long frame, std::span<const std::string> fields);
+
+// A file format for the particles of a frame. A format is one file that defines it and one line in
+// particle_formats.cpp.
+
+struct ParticleFormat {
+  std::string_view name;  ///< as asked for; also the ending of the files
+  bool holdsFields;       ///< or positions only
+  /// Endings of a list of all files and their times that programs for this format know; empty: none.
+  std::string_view seriesEnding;
+  /// The content of the file.
+  std::string (*text)(const ParticleFrame& frame);
+};
+
+ParticleFormat plyFormat();
+ParticleFormat vtkFormat();
+ParticleFormat objFormat();
+
+std::span<const ParticleFormat> particleFormats();
+
+// A sequence of particle files, written by a thread of its own while the simulation goes on: NAME_000000.ply
+// and so on, and NAME.ply.json, which lists them with their times and hashes. Each file is whole or not
+// there, and the list names only files that are.
 
 struct ExportOptions {
   std::filesystem::path folder;  ///< made if it is not there
@@ -80,6 +147,21 @@ class ParticleExport {
   std::exception_ptr failure_;
 
   std::thread thread_;
+};
+
+// Which frames of a run a sequence has: those nearest to 0, S, 2 S, ... seconds.
+
+class ExportSchedule {
+ public:
+  /// `every` and `timeStep` in s, both positive.
+  ExportSchedule(double every, double timeStep) : stride_(every / timeStep) {}
+
+  bool due(long frame) const;
+  /// How many frames before this one are due: the number of its file.
+  long countBefore(long frame) const;
+
+ private:
+  double stride_;  ///< frames, not necessarily whole
 };
 
 }  // namespace migiwa

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/error.h"
 #include "core/base/fields.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 

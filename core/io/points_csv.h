@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/base/types.h"
+#include "core/base/math.h"
 
 namespace migiwa {
 

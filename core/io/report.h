@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/measures.h"
 #include "core/simulation/simulation.h"
 

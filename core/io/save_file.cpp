@@ -5,12 +5,12 @@
 #include <fstream>
 #include <set>
 
-#include "core/base/checksum.h"
-#include "core/base/error.h"
-#include "core/base/state_hash.h"
-#include "core/io/output_file.h"
-#include "core/scene/scene_identity.h"
-#include "core/simulation/state_visitor.h"
+#include "core/base/files.h"
+#include "core/base/hash.h"
+#include "core/base/messages.h"
+#include "core/scene/json.h"
+#include "core/scene/scene_file.h"
+#include "core/simulation/state.h"
 
 namespace migiwa {
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/measures.h"
 #include "core/simulation/simulation.h"
 

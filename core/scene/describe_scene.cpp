@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "core/boundary/gamma_method.h"
-#include "core/scene/default_camera.h"
-#include "core/scene/scene_reader.h"
+#include "core/gamma/gamma_method.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 
@@ -73,13 +73,13 @@ void describeShapes(FieldWriter& visitor, std::string_view key, const FieldDoc& 
 
 template <class Visitor>
 void describeFluid(Visitor& visitor, Visited<Visitor, Scene>& scene) {
-  const bool spacingKnown = visitor.sound({"particle_spacing"});
+  const bool spacingKnown = visitor.valid({"particle_spacing"});
   const auto more = [&](auto& fields, auto& source) {
     fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
     fields.boolean("trim", source.trim,
                    {"", "Leave out particles less than half a spacing inside the fluid side of a wall."});
     if (Visitor::kChanges && spacingKnown &&
-        fields.sound({"min", "max", "center", "radius", "file", "transform"}) &&
+        fields.valid({"min", "max", "center", "radius", "file", "transform"}) &&
         source.count(scene.particleSpacing) < 1)
       fields.fault("",
                    "expected a region with room for a particle, found one thinner than half of "
@@ -93,7 +93,7 @@ void describeFluid(Visitor& visitor, Visited<Visitor, Scene>& scene) {
 
 template <class Visitor>
 void describeEmitters(Visitor& visitor, Visited<Visitor, Scene>& scene) {
-  const double spacing = visitor.sound({"particle_spacing"}) ? scene.particleSpacing : 0;
+  const double spacing = visitor.valid({"particle_spacing"}) ? scene.particleSpacing : 0;
   auto& emitters = scene.emitters;
   visitor.list("emitters", emitters.size(), {"", "Mouths that give fluid while the simulation runs."},
                [&](auto& fields, std::size_t at) {
@@ -161,7 +161,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at most."});
-  if (visitor.sound({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
+  if (visitor.valid({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
     visitor.fault("min_iterations", "expected at most max_iterations, which is " +
                                         std::to_string(solver.maxIterations) + ", found " +
                                         std::to_string(solver.minIterations));
@@ -225,12 +225,12 @@ void describeCamera(Visitor& visitor, Visited<Visitor, Camera>& camera) {
   visitor.number("fov_degrees", camera.fovDegrees, Range::closed(1, 120),
                  {"degrees", "Vertical field of view."});
   const Vec3d ahead = camera.target - camera.eye;
-  if (visitor.sound({"eye", "target"}) && ahead.norm() < 1e-9)
+  if (visitor.valid({"eye", "target"}) && ahead.norm() < 1e-9)
     visitor.fault("target", "expected a point away from eye, found the same point");
-  if (visitor.sound({"up"}) && camera.up.norm() < 1e-9)
+  if (visitor.valid({"up"}) && camera.up.norm() < 1e-9)
     visitor.fault("up", "expected a vector that is not zero, found [0, 0, 0]");
   const double across = ahead.cross(camera.up).norm();
-  if (visitor.sound({"eye", "target", "up"}) && across < 1e-6 * ahead.norm() * camera.up.norm())
+  if (visitor.valid({"eye", "target", "up"}) && across < 1e-6 * ahead.norm() * camera.up.norm())
     visitor.fault("up", "expected a direction across the line of sight, found one along it");
 }
 

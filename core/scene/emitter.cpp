@@ -1,5 +1,3 @@
-#include "core/scene/emitter.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "core/base/portable_math.h"
+#include "core/base/math.h"
+#include "core/scene/sources.h"
 
 namespace migiwa {
 
@@ -90,30 +89,30 @@ void Emitter::describe(FieldVisitor& visitor, double spacing) {
 }
 
 void Emitter::check(FieldVisitor& visitor, double spacing) {
-  if (visitor.sound({"direction"}) && direction.norm() < 1e-12) {
+  if (visitor.valid({"direction"}) && direction.norm() < 1e-12) {
     visitor.fault("direction", "expected a vector that is not zero, found [0, 0, 0]");
     direction = -Vec3d::UnitY();
   }
-  if (shape == MouthShape::rectangle && visitor.sound({"size"}) && (size[0] <= 0 || size[1] <= 0)) {
+  if (shape == MouthShape::rectangle && visitor.valid({"size"}) && (size[0] <= 0 || size[1] <= 0)) {
     visitor.fault("size", "expected two lengths greater than 0, found one that is not");
     size = {1, 1};
   }
-  if (visitor.sound({"x_axis", "direction"}) && xAxis.norm() > 0 &&
+  if (visitor.valid({"x_axis", "direction"}) && xAxis.norm() > 0 &&
       xAxis.cross(direction).norm() < 1e-6 * xAxis.norm() * direction.norm())
     visitor.fault("x_axis", "expected a direction across that of the fluid, found one along it");
-  if (visitor.sound({"speed", "rate"}) && (speed > 0) == (rate > 0)) {
+  if (visitor.valid({"speed", "rate"}) && (speed > 0) == (rate > 0)) {
     visitor.fault("", std::string("expected either speed or rate, greater than 0, found ") +
                           (speed > 0 ? "both" : "neither"));
     speed = 1;
-  } else if (visitor.sound({"speed", "rate", "radius", "size"}) && !kMouthSpeeds.contains(mouthSpeed())) {
+  } else if (visitor.valid({"speed", "rate", "radius", "size"}) && !kMouthSpeeds.contains(mouthSpeed())) {
     std::ostringstream text;
     text << "expected a speed at the mouth " << kMouthSpeeds.text() << " (unit: m/s), found " << mouthSpeed();
     if (rate > 0) text << ", rate over the mouth's area of " << area() << " m^2; another of the two helps";
     visitor.fault(rate > 0 ? "rate" : "speed", text.str());
   }
-  if (visitor.sound({"start", "stop"}) && stop <= start)
+  if (visitor.valid({"start", "stop"}) && stop <= start)
     visitor.fault("stop", "expected a time after start, found an earlier one");
-  if (spacing <= 0 || !visitor.sound({"radius", "size"})) return;
+  if (spacing <= 0 || !visitor.valid({"radius", "size"})) return;
   // One too large to be counted by making it has about as many as its area says.
   constexpr double kCounted = 1e5;
   const double about = area() / (spacing * spacing);
@@ -121,7 +120,7 @@ void Emitter::check(FieldVisitor& visitor, double spacing) {
       about < kCounted ? static_cast<double>(mouthLayer(*this, spacing).places.size()) : std::ceil(about);
   if (layer == 0)
     visitor.fault("", "expected a mouth with room for a particle, found one smaller than particle_spacing");
-  if (layer > particles && visitor.sound({"particles"})) {
+  if (layer > particles && visitor.valid({"particles"})) {
     std::ostringstream text;
     text << "expected at least the " << layer << " particles of one layer in the mouth, found " << particles
          << "; a larger particle_spacing makes fewer";

@@ -1,12 +1,11 @@
-#include "core/scene/mesh_fill.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/base/bounds.h"
+#include "core/base/math.h"
+#include "core/scene/sources.h"
 
 namespace migiwa {
 

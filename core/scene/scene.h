@@ -1,21 +1,30 @@
-// A scene as a value: everything a simulation and a picture need, validated, free of JSON. Surfaces, sources
-// and effects are shared and never change after reading, so a scene can be copied and handed around.
+// A scene as a value, with the limits of what can be run.
 #pragma once
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/boundary/surface.h"
-#include "core/effects/effect.h"
-#include "core/scene/color_field.h"
-#include "core/scene/emitter.h"
-#include "core/scene/fluid_source.h"
+#include "core/scene/sources.h"
+#include "core/solver/effect.h"
 #include "core/solver/parameters.h"
+#include "core/walls/surface.h"
 
 namespace migiwa {
+
+// The particle quantities that pictures can be coloured by.
+
+enum class ColorField { density, speed, gamma, lambda, neighbours, pressure };
+inline constexpr std::array<std::string_view, 6> kColorFieldNames{"density", "speed",      "gamma",
+                                                                  "lambda",  "neighbours", "pressure"};
+
+// A scene as a value: everything a simulation and a picture need, validated, free of JSON. Surfaces, sources
+// and effects are shared and never change after reading, so a scene can be copied and handed around.
 
 struct Camera {
   Vec3d eye{3, 2, 5};     ///< (unit: m)
@@ -71,5 +80,59 @@ struct Scene {
   /// Extent of fluid and finite walls, wherever they are within the duration.
   Bounds bounds() const;
 };
+
+// Whether a scene's particles have room on this machine.
+
+/// Memory that a particle takes while it is simulated, all arrays and neighbour lists together (bytes).
+inline constexpr double kBytesPerParticle = 600;
+
+/// Particles that a simulation has at most, whatever the memory: neighbours are listed by their offsets in
+/// bytes, of 16 a particle, in 32 bits; one place is for the ghost.
+inline constexpr double kLargestCount = 268435455;
+
+/// A positive number for people, to two digits up or three down; no other digits than it needs.
+double shownRoundedUp(double value);
+double shownRoundedDown(double value);
+
+/// Particles that fit into `memory` (bytes).
+double mostParticles(double memory);
+
+/// Particles of all fluid sources, and of all emitters until `time` (s), at most, at any spacing (m).
+double particleCount(const Scene& scene, double spacing, double time);
+/// The same at the scene's spacing within its duration.
+double particleCount(const Scene& scene);
+
+/// "expected ..., found ..." with the spacing that would do, or nothing when the particles fit into `memory`
+/// (bytes). `count` says how many there are at a spacing (m).
+std::optional<std::string> tooManyParticles(const std::function<double(double)>& count, double spacing,
+                                            double memory);
+/// The same for so many particles that go with the spacing to the power of -3.
+std::optional<std::string> tooManyParticles(double particles, double spacing, double memory);
+
+// The camera of a scene that names none.
+
+/// Sees all of `bounds` (m) from the front, a little from above and from the right; up is against gravity
+/// (m/s^2).
+Camera defaultCamera(const Bounds& bounds, const Vec3d& gravity);
+
+// Whether a scene can be run to a given time at all: in steps that somebody can wait for, and with particles
+// that have room. Both are asked before anything is made, of the time that the run really ends at.
+
+/// Steps that a run has at most. At a microsecond a step, which no machine reaches, they take a quarter of an
+/// hour for a handful of particles, and years for a scene that is worth looking at.
+inline constexpr double kMostSteps = 1e9;
+
+/// Steps of a run to `time` (s), at least: the CFL rule may ask for more.
+double fewestSteps(const SolverParameters& solver, double time);
+
+/// "expected ..., found ..." for a time_step of which `duration` (s) has too many, or nothing.
+std::optional<std::string> tooShortStep(const SolverParameters& solver, double duration);
+
+/// "expected ..., found ..." for an end `until` (s) that the scene cannot be run to, or nothing: too many
+/// steps, or emitters that by then have given more particles than fit into `memory` (bytes).
+std::optional<std::string> tooLateAnEnd(const Scene& scene, double until, double memory);
+
+/// Throws InputError at `option` for such an end and the memory that is available.
+void requireReachable(const Scene& scene, double until, const std::string& option);
 
 }  // namespace migiwa

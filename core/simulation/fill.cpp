@@ -1,6 +1,12 @@
 #include "core/simulation/fill.h"
 
-#include "core/base/available_memory.h"
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "core/base/files.h"
+#include "core/simulation/frame_view.h"
 
 namespace migiwa {
 
@@ -36,6 +42,177 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
       scene.warnings.push_back("/fluid/" + std::to_string(k) +
                                ": no particle is left of this source; it lies within or too near the walls");
     }
+  }
+}
+
+namespace {
+
+/// Makes room for `size` particles and some more, so that layers do not move the buffers one by one. False
+/// where that memory cannot be had.
+bool makeRoom(StepState& state, std::size_t size) {
+  const std::size_t capacity = state.particles.id.capacity();
+  if (size <= capacity) return true;
+  const std::size_t room = size + size / 2 + 1024;
+  if (kBytesPerParticle * static_cast<double>(room - capacity) > availableMemory()) return false;
+  state.particles.position.reserve(room);
+  state.particles.velocity.reserve(room);
+  state.particles.id.reserve(room);
+  const std::size_t withGhost = room + NeighbourLists::kScratchExtra;
+  state.current.reserve(withGhost);
+  state.previous.reserve(withGhost);
+  state.paired.reserve(withGhost);
+  if (!state.before.position.empty()) {
+    state.before.position.reserve(room);
+    state.before.velocity.reserve(room);
+  }
+  state.spareIds.reserve(room);
+  state.wallSlot.reserve(room);
+  state.gamma.reserve(room);
+  state.density.reserve(room);
+  state.lambda.reserve(room);
+  return true;
+}
+
+}  // namespace
+
+Emission::Emission(Scene& scene, const Boundary& boundary, double most)
+    : given_(scene.emitters.size()), most_(most) {
+  const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
+  for (std::size_t k = 0; k < scene.emitters.size(); ++k) {
+    const Emitter& emitter = scene.emitters[k];
+    // Also of one that begins after the duration, whose particles the reader has not counted.
+    requireMemory(kBytesPerParticle * emitter.area() / (scene.particleSpacing * scene.particleSpacing),
+                  "the particles of a layer", scene.file.string() + ":/emitters/" + std::to_string(k));
+    MouthLayer layer = mouthLayer(emitter, scene.particleSpacing);
+    const auto barred = std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
+      return boundary.distance(place.cast<float>()) < margin;
+    });
+    if (barred > 0) {
+      scene.warnings.push_back("/emitters/" + std::to_string(k) + ": " + std::to_string(barred) + " of the " +
+                               std::to_string(layer.places.size()) +
+                               " particles of a layer lie within or too near the walls");
+    }
+    const double interval = layer.thickness / emitter.mouthSpeed();
+    mouths_.push_back(
+        {emitter, std::move(layer), emitter.mouthSpeed() * emitter.direction.normalized(), interval});
+  }
+}
+
+void Emission::addLayer(const Mouth& mouth, double age, StepState& state) {
+  Particles& particles = state.particles;
+  const bool slots = state.wallSlot.size() == particles.size();
+  for (const Vec3d& place : mouth.layer.places) {
+    particles.position.emplace_back(Vec3f((place + age * mouth.velocity).cast<float>()));
+    particles.velocity.emplace_back(Vec3f(mouth.velocity.cast<float>()));
+    particles.id.push_back(static_cast<std::uint32_t>(particles.id.size()));
+    if (slots) state.wallSlot.push_back(FluidState::kNoWall);
+  }
+}
+
+void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
+  for (std::size_t k = 0; k < mouths_.size(); ++k) {
+    const Mouth& mouth = mouths_[k];
+    EmitterState& given = given_[k];
+    const auto layer = static_cast<std::int64_t>(mouth.layer.places.size());
+    while (true) {
+      const double leaves = mouth.emitter.start + static_cast<double>(given.layers) * mouth.interval;
+      if (leaves > time || leaves >= mouth.emitter.stop) break;
+      if (given.particles + layer > mouth.emitter.particles) {
+        statistics.note("emitter_limit", statistics.steps,
+                        "/emitters/" + std::to_string(k) + " has given the " +
+                            std::to_string(given.particles) + " particles that it may give");
+        break;
+      }
+      if (static_cast<double>(state.particles.size()) + static_cast<double>(layer) > most_) {
+        std::ostringstream detail;
+        detail << "/emitters/" << k << " gives nothing more: with another " << layer
+               << " particles there would be more than the " << most_ << " that a simulation may have";
+        statistics.note("particle_limit", statistics.steps, detail.str());
+        break;
+      }
+      if (!makeRoom(state, state.particles.size() + mouth.layer.places.size())) {
+        statistics.note("emitter_memory", statistics.steps,
+                        "/emitters/" + std::to_string(k) +
+                            " gives nothing more: there is no memory left for " + std::to_string(layer) +
+                            " particles beside " + std::to_string(state.particles.size()));
+        break;
+      }
+      addLayer(mouth, time - leaves, state);
+      ++given.layers;
+      given.particles += layer;
+    }
+  }
+}
+
+void Emission::visit(StateVisitor& visitor) {
+  if (empty()) return;
+  visitor.array("emitters/given", given_);
+  if (given_.size() != mouths_.size())
+    throw StateError("the state of " + std::to_string(mouths_.size()) + " emitters, found that of " +
+                     std::to_string(given_.size()));
+}
+
+double Emission::largestSpeed(double from, double to) const {
+  double speed = 0;
+  for (const Mouth& mouth : mouths_)
+    if (mouth.emitter.start <= to && mouth.emitter.stop > from)
+      speed = std::max(speed, mouth.emitter.mouthSpeed());
+  return speed;
+}
+
+void FrameSnapshot::assign(const FrameView& view) {
+  info = view.info;
+  positions.assign(view.positions.begin(), view.positions.end());
+  velocities.assign(view.velocities.begin(), view.velocities.end());
+  density.assign(view.density.begin(), view.density.end());
+  gamma.assign(view.gamma.begin(), view.gamma.end());
+  lambda.assign(view.lambda.begin(), view.lambda.end());
+  pressure.assign(view.pressure.begin(), view.pressure.end());
+  neighbours.assign(view.neighbours.begin(), view.neighbours.end());
+  walls = view.walls;
+}
+
+ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed, double restDensity) {
+  switch (field) {
+    case ColorField::density:
+      return {"density ρ/ρ₀", "", 0.6, 1.2};
+    case ColorField::speed:
+      return {"speed |v|", "m/s", 0, referenceSpeed};
+    case ColorField::gamma:
+      return {"boundary correction γ", "", 0.4, 1};
+    case ColorField::lambda:
+      return {"multiplier λh²", "", -0.02, 0};
+    case ColorField::neighbours:
+      return {"neighbours", "", 0, 60};
+    case ColorField::pressure:
+      return {"pressure p", "kPa", 0, 1e-3 * 0.5 * restDensity * referenceSpeed * referenceSpeed};
+  }
+  return {};
+}
+
+void colorFieldValues(const FrameView& view, ColorField field, std::vector<float>& out) {
+  switch (field) {
+    case ColorField::density:
+      out.assign(view.density.begin(), view.density.end());
+      return;
+    case ColorField::gamma:
+      out.assign(view.gamma.begin(), view.gamma.end());
+      return;
+    case ColorField::lambda:
+      out.assign(view.lambda.begin(), view.lambda.end());
+      return;
+    case ColorField::neighbours:
+      out.resize(view.neighbours.size());
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<float>(view.neighbours[i]);
+      return;
+    case ColorField::pressure:
+      out.assign(view.positions.size(), 0);
+      for (std::size_t i = 0; i < view.pressure.size(); ++i) out[i] = 1e-3F * view.pressure[i];
+      return;
+    case ColorField::speed:
+      out.resize(view.velocities.size());
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = view.velocities[i].xyz().norm();
+      return;
   }
 }
 

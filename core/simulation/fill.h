@@ -1,13 +1,91 @@
-// The particles that a scene starts with.
+// Particles that a simulation starts with, and those that emitters add.
 #pragma once
 
-#include "core/boundary/boundary.h"
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
 #include "core/scene/scene.h"
-#include "core/solver/step_state.h"
+#include "core/simulation/state.h"
+#include "core/simulation/statistics.h"
+#include "core/solver/state.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa {
 
+// The particles that a scene starts with.
+
 /// Fills every source with its lattice, trimmed at the solids. A source that trimming empties adds a warning.
 void fillScene(Scene& scene, const Boundary& boundary, Particles& particles);
+
+// What the emitters of a scene give while it runs. Layer k of an emitter leaves the mouth at
+// start + k * thickness / speed, whatever the substeps, so two integers say how far an emitter is.
+
+/// What an emitter has given so far.
+struct EmitterState {
+  std::int64_t layers = 0;
+  std::int64_t particles = 0;
+};
+
+class Emission {
+ public:
+  /// Keeps no reference to the scene. Warns of mouths within walls. Throws InputError where a layer has no
+  /// room in memory. `most`: particles that all of the simulation may have.
+  Emission(Scene& scene, const Boundary& boundary, double most = kLargestCount);
+
+  bool empty() const { return mouths_.empty(); }
+  /// Adds the layers that have left by `time` (s), where they are by then. Ids go on from the number of
+  /// particles. An emitter that reaches its limit, or that of the simulation or its memory, gives nothing
+  /// more, and is noted as trouble.
+  void emit(double time, StepState& state, RunStatistics& statistics);
+  /// The largest speed (m/s) at a mouth that is open between `from` and `to` (s).
+  double largestSpeed(double from, double to) const;
+
+  /// For a save: how far the emitters are.
+  void visit(StateVisitor& visitor);
+
+ private:
+  struct Mouth {
+    Emitter emitter;
+    MouthLayer layer;
+    Vec3d velocity;   ///< (m/s)
+    double interval;  ///< from layer to layer (s)
+  };
+  static void addLayer(const Mouth& mouth, double age, StepState& state);
+
+  std::vector<Mouth> mouths_;
+  std::vector<EmitterState> given_;
+  double most_;
+};
+
+// Other walls in the place of those that a simulation has: for as long as it is not certain that they stay.
+
+class WallExchange {
+ public:
+  explicit WallExchange(Boundary& place) : place_(place) {}
+  /// Puts the old walls back, unless the new ones are to be kept.
+  ~WallExchange() {
+    if (put_) std::swap(place_, other_);
+  }
+  WallExchange(const WallExchange&) = delete;
+  WallExchange& operator=(const WallExchange&) = delete;
+
+  /// Once. What refers to the old surfaces goes on doing so: they last as long as this exchange.
+  void put(Boundary walls) {
+    other_ = std::move(walls);
+    std::swap(place_, other_);
+    put_ = true;
+  }
+  void keep() { put_ = false; }
+
+ private:
+  static_assert(std::is_nothrow_move_constructible_v<Boundary> &&
+                std::is_nothrow_move_assignable_v<Boundary>);
+
+  Boundary& place_;
+  Boundary other_;
+  bool put_ = false;
+};
 
 }  // namespace migiwa

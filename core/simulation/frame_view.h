@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "core/base/stage_times.h"
-#include "core/base/types.h"
-#include "core/boundary/wall_drawing.h"
-#include "core/scene/color_field.h"
-#include "core/simulation/energy_balance.h"
-#include "core/solver/iteration_error.h"
+#include "core/base/math.h"
+#include "core/base/parallel.h"
+#include "core/scene/scene.h"
+#include "core/simulation/statistics.h"
+#include "core/solver/state.h"
+#include "core/walls/surface.h"
 
 namespace migiwa {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "core/boundary/boundary.h"
-#include "core/simulation/upright_tank.h"
-#include "core/sph/cell_grid.h"
+#include "core/sph/neighbours.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa {
 
@@ -131,6 +131,88 @@ void SettledSampler::visit(StateVisitor& visitor) {
   visitor.number("/settled/squared_speed", sums_.squaredSpeed);
   nearWall_.visit(visitor, "settled/near_wall");
   bulk_.visit(visitor, "settled/bulk");
+}
+
+void SpacingHistogram::add(float distance) {
+  // A neighbour is within the support radius; beyond it, all are as far.
+  constexpr float kFarthest = 1000;
+  const auto bin =
+      static_cast<std::size_t>(std::lround(std::fmin(distance, kFarthest) * static_cast<float>(kBins)));
+  if (bin >= counts_.size()) counts_.resize(bin + 1, 0);
+  ++counts_[bin];
+}
+
+double SpacingHistogram::atRank(std::uint64_t rank) const {
+  std::uint64_t seen = 0;
+  std::size_t bin = 0;
+  while (seen + counts_[bin] <= rank) seen += counts_[bin++];
+  return static_cast<double>(bin) / kBins;
+}
+
+std::optional<double> SpacingHistogram::firstPercentile() const {
+  const std::uint64_t total = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
+  if (total == 0) return std::nullopt;
+  const double place = 0.01 * static_cast<double>(total - 1);
+  const auto low = static_cast<std::uint64_t>(place);
+  const double a = atRank(low);
+  if (low + 1 == total) return a;
+  return a + (place - static_cast<double>(low)) * (atRank(low + 1) - a);
+}
+
+void SpacingHistogram::visit(StateVisitor& visitor, const std::string& name) {
+  std::vector<std::uint32_t> bins;
+  std::vector<std::uint64_t> counts;
+  for (std::size_t bin = 0; bin < counts_.size(); ++bin) {
+    if (counts_[bin] == 0) continue;
+    bins.push_back(static_cast<std::uint32_t>(bin));
+    counts.push_back(counts_[bin]);
+  }
+  visitor.array(name + "/bins", bins);
+  visitor.array(name + "/counts", counts);
+  if (!visitor.reading()) return;
+  constexpr std::uint32_t kMost = 1000 * kBins;
+  if (bins.size() != counts.size() || (!bins.empty() && bins.back() > kMost))
+    throw StateError("a count for every bin of " + name + ", found something else");
+  counts_.assign(bins.empty() ? 0 : std::size_t{bins.back()} + 1, 0);
+  for (std::size_t k = 0; k < bins.size(); ++k) counts_.at(bins[k]) = counts[k];
+}
+
+std::optional<UprightTank> uprightTank(const Scene& scene) {
+  if (scene.gravity.norm() <= 0 || scene.surfaces.size() != 1 || scene.surfaces.front()->motion)
+    return std::nullopt;
+  const BoxGeometry* box = scene.surfaces.front()->tank();
+  if (box == nullptr) return std::nullopt;
+  int axis = 0;
+  const Vec3d along = box->axes.transpose() * -scene.gravity.normalized();
+  if (along.cwiseAbs().maxCoeff(&axis) < 0.9999) return std::nullopt;
+  const int first = (axis + 2) % 3, second = (axis + 1) % 3;
+  UprightTank tank;
+  tank.center = box->center;
+  tank.axes << box->axes.col(first), std::copysign(1.0, along[axis]) * box->axes.col(axis),
+      box->axes.col(second);
+  tank.half = {box->halfExtents[first], box->halfExtents[axis], box->halfExtents[second]};
+  return tank;
+}
+
+SettledMeasures runUntil(Simulation& simulation, double until, const std::function<bool()>& eachFrame) {
+  SettledSampler sampler;
+  return runUntil(simulation, until, sampler, eachFrame);
+}
+
+SettledMeasures runUntil(Simulation& simulation, double until, SettledSampler& sampler,
+                         const std::function<bool()>& eachFrame) {
+  const long last = simulation.frameAt(until);
+  const long firstSampled = static_cast<long>(std::floor(0.9 * static_cast<double>(last)));
+  // Samples of neighbouring frames hardly differ: some fifty of them say what all would.
+  const long stride = std::max(1L, (last - firstSampled) / 50);
+  sampler.beginRun(last);
+  while (simulation.frame() < last && !simulation.stopped()) {
+    simulation.advanceFrame();
+    const long frame = simulation.frame();
+    if (frame > firstSampled && (last - frame) % stride == 0) sampler.sample(simulation);
+    if (eachFrame && !eachFrame()) break;
+  }
+  return sampler.result();
 }
 
 }  // namespace migiwa

@@ -8,21 +8,18 @@
 #include <string>
 #include <utility>
 
-#include "core/base/available_memory.h"
-#include "core/base/guard.h"
-#include "core/base/state_hash.h"
-#include "core/boundary/boundary.h"
-#include "core/boundary/gridded_surface.h"
-#include "core/boundary/handling.h"
-#include "core/scene/particle_limit.h"
-#include "core/simulation/emission.h"
+#include "core/base/files.h"
+#include "core/base/hash.h"
+#include "core/base/messages.h"
+#include "core/gamma/gamma_method.h"
+#include "core/scene/scene.h"
 #include "core/simulation/fill.h"
-#include "core/simulation/health.h"
-#include "core/simulation/step_memory.h"
-#include "core/simulation/wall_exchange.h"
-#include "core/solver/hold_energy.h"
-#include "core/solver/pbf_solver.h"
-#include "core/solver/thin_walls.h"
+#include "core/simulation/state.h"
+#include "core/simulation/statistics.h"
+#include "core/solver/parameters.h"
+#include "core/solver/step.h"
+#include "core/walls/boundary.h"
+#include "core/walls/gridded.h"
 
 namespace migiwa {
 
@@ -36,12 +33,14 @@ Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
 }  // namespace
 
 struct Simulation::State {
-  State(Scene theScene, int threads)
+  State(Scene theScene, int threads, Guards guards)
       : scene(std::move(theScene)),
         pool(threads),
         boundary(wallsOf(scene, pool)),
         step(pool, boundary),
-        emission(scene, boundary) {}
+        emission(scene, boundary) {
+    step.guards = guards == Guards::on;
+  }
 
   /// Takes settings over wholly, or throws and stays as it is.
   void configure(const Settings& settings);
@@ -50,7 +49,7 @@ struct Simulation::State {
   void partCrowded();
   void takeBackExcess(const EnergySums& before, double dt);
   void refuseNotFinite();
-  void refuseSqueeze(const Squeeze& squeeze, double start);
+  void refuseOverConstrained(const OverConstrained& overConstrained, double start);
   void moveWalls(double before, double now);
   double largestSpeed(double start, double span) const;
   std::uint64_t hash() {
@@ -111,7 +110,7 @@ void Simulation::State::configure(const Settings& settings) {
     boundary.moveTo(time, time);
   }
   std::vector<const Surface*> thin = migiwa::thinWalls(boundary, supportRadius), barring;
-  if (kGuards) barring = migiwa::barringWalls(boundary, supportRadius);
+  if (step.guards) barring = migiwa::collisionWalls(boundary, supportRadius);
   const RestingLattice lattice = restingLattice(changed.solver.kernel, changed.solver.supportRatio);
   PickedGamma picked;
   std::string handlingName = "no correction", gammaName;
@@ -146,7 +145,7 @@ void Simulation::State::configure(const Settings& settings) {
   step.spacing = static_cast<float>(scene.particleSpacing);
   step.supportRadius = supportRadius;
   step.thinWalls.swap(thin);
-  step.barringWalls.swap(barring);
+  step.collisionWalls.swap(barring);
   step.lattice = lattice;
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();
@@ -156,8 +155,8 @@ void Simulation::State::configure(const Settings& settings) {
   info.supportRadius = step.supportRadius;
 }
 
-Simulation::Simulation(Scene scene, int threads)
-    : state_(std::make_unique<State>(std::move(scene), threads)) {
+Simulation::Simulation(Scene scene, int threads, Guards guards)
+    : state_(std::make_unique<State>(std::move(scene), threads, guards)) {
   State& state = *state_;
   fillScene(state.scene, state.boundary, state.step.particles);
   state.configure(settings());
@@ -165,14 +164,14 @@ Simulation::Simulation(Scene scene, int threads)
   // The reader has asked before there were grids of the walls.
   requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
                 state.scene.file.string() + ":/particle_spacing");
-  if (const long inside = kGuards ? stabilise(state.step) : 0; inside > 0) {
+  if (const long inside = state.step.guards ? stabilise(state.step) : 0; inside > 0) {
     state.statistics.note("started_in_wall", 0,
                           std::to_string(inside) +
                               " particles began nearer than half a spacing to a wall or beyond "
                               "it; they were moved out without gaining speed");
   } else {
     prepareFields(state.step);
-    if (const double error = state.step.errors.back().max; kGuards && error > kCrowded) {
+    if (const double error = state.step.errors.back().max; state.step.guards && error > kCrowded) {
       relax(state.step);
       state.statistics.note("started_crowded", 0,
                             "sources overlap: density " + std::to_string(1 + error) +
@@ -278,14 +277,15 @@ void Simulation::State::refuseNotFinite() {
 }
 
 /// The same where walls leave no room: they go back, too.
-void Simulation::State::refuseSqueeze(const Squeeze& squeeze, double start) {
+void Simulation::State::refuseOverConstrained(const OverConstrained& overConstrained, double start) {
   std::ostringstream detail;
   detail << "walls leave the fluid less room than it needs: however long it is solved for, its density stays "
-         << 1 + squeeze.largest << " of that at rest at (" << squeeze.place.x() << ", " << squeeze.place.y()
-         << ", " << squeeze.place.z() << ") m, and " << 1 + squeeze.mean << " in the mean of all, after "
-         << start << " s; the step was not taken. Let the fluid out, stop the moving wall earlier, or start "
+         << 1 + overConstrained.largest << " of that at rest at (" << overConstrained.place.x() << ", "
+         << overConstrained.place.y() << ", " << overConstrained.place.z() << ") m, and "
+         << 1 + overConstrained.mean << " in the mean of all, after " << start
+         << " s; the step was not taken. Let the fluid out, stop the moving wall earlier, or start "
          << "or emit less fluid";
-  statistics.squeezed = true;
+  statistics.overConstrained = true;
   statistics.note("squeezed", statistics.steps + 1, detail.str());
   if (boundary.moves()) moveWalls(start, start);
   prepareFields(step);
@@ -294,11 +294,8 @@ void Simulation::State::refuseSqueeze(const Squeeze& squeeze, double start) {
 void Simulation::State::advanceSubstep(double start, double dt) {
   const auto began = std::chrono::steady_clock::now();
   step.timeStep = static_cast<float>(dt);
-  step.gammaFloored = step.spreadParticles = 0;
-  step.wallJumps.clear();
-  step.metCoincident = false;
+  static_cast<StepRecord&>(step).clear();
   savedNeighbours.clear();
-  step.times.clear();
   if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
   EnergySums before = health.energy;
   statistics.energy.beginStep(step, before.particles, dt, statistics.steps == 0);
@@ -306,12 +303,12 @@ void Simulation::State::advanceSubstep(double start, double dt) {
   const StepRefusal refusal = advanceStep(step, effects);
   stepTaken = !refusal.any();
   if (refusal.notFinite) return refuseNotFinite();
-  if (refusal.squeeze.found) return refuseSqueeze(refusal.squeeze, start);
+  if (refusal.overConstrained.found) return refuseOverConstrained(refusal.overConstrained, start);
   step.times.time("check", [&] {
     health = inspect(step, limits);
-    if (kGuards) takeBackExcess(before, dt);
+    if (step.guards) takeBackExcess(before, dt);
   });
-  if (kGuards && step.errors.back().max > kCrowded) {
+  if (step.guards && step.errors.back().max > kCrowded) {
     step.times.time("relax", [&] { partCrowded(); });
     health = inspect(step, limits);
   }
@@ -486,6 +483,15 @@ WallDrawing Simulation::walls() const {
     surface->drawnNodes(walls.nodes);
   }
   return walls;
+}
+
+void requireSteppable(const BoundaryParameters& boundary, const std::filesystem::path& scene) {
+  const auto method = static_cast<std::size_t>(boundary.gammaMethod);
+  if (boundary.handling != BoundaryHandling::gamma || method < steppedGammaMethodNames().size()) return;
+  throw InputError(scene.string() + ":/boundary/gamma/method",
+                   "expected a method that is quick enough for every step, such as \"auto\", found \"" +
+                       std::string(gammaMethodNames()[method]) +
+                       "\", a reference for migiwa gamma alone; --set /boundary/gamma/method=auto helps");
 }
 
 }  // namespace migiwa

@@ -1,23 +1,41 @@
-// A scene in motion. Owns the particles and the solver; knows nothing of windows, files and pictures.
+// A scene in motion.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/scene/scene.h"
 #include "core/simulation/frame_view.h"
-#include "core/simulation/settings.h"
 #include "core/simulation/statistics.h"
+#include "core/solver/effect.h"
+#include "core/solver/parameters.h"
 
 namespace migiwa {
+
+// What may change between two steps of a running simulation.
+
+struct Settings {
+  SolverParameters solver;
+  BoundaryParameters boundary;
+  std::vector<NamedEffect> effects;
+};
+
+/// Throws InputError where these settings of the scene file `scene` name a method for gamma that is only
+/// there to compare with: no simulation can use it in every step.
+void requireSteppable(const BoundaryParameters& boundary, const std::filesystem::path& scene);
+
+// A scene in motion. Owns the particles and the solver; knows nothing of windows, files and pictures.
 
 class StateVisitor;
 
 class Simulation {
  public:
-  /// Fills the sources and prepares the walls. `threads` 0 takes what the machine has.
-  explicit Simulation(Scene scene, int threads = 0);
+  /// Fills the sources and prepares the walls. `threads` 0 takes what the machine has. Without guards
+  /// hard cases may fall apart: for comparison only.
+  explicit Simulation(Scene scene, int threads = 0, Guards guards = Guards::on);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

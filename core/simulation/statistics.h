@@ -1,14 +1,88 @@
-// What is counted while a simulation runs; the report (core/io/report.h) writes it down. Names and meanings
-// are those of the report's keys.
+// What happened in a run: statistics, trouble, and the balance of energy.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/base/stage_times.h"
-#include "core/simulation/energy_balance.h"
+#include "core/base/math.h"
+#include "core/base/parallel.h"
+#include "core/scene/scene.h"
+#include "core/solver/energy.h"
+#include "core/solver/state.h"
 
 namespace migiwa {
+
+// The energy of the fluid over a run against what was put in: by moving walls, by emitters and by effects.
+// What remains is the doing of the solver, which may take energy away but has none to give, save what it
+// finds stored in fluid that is too dense. Definitions in core/solver/energy.h.
+
+class StateVisitor;
+struct StepState;
+
+/// Energies over the mass of all particles that there are (J/kg), at one time.
+struct EnergySample {
+  double time = 0;  ///< (s)
+  double kinetic = 0, potential = 0;
+  double source = 0;  ///< the energy of the start, and what walls, emitters and effects have given since
+};
+
+/// All energies here are sums over particles of energy over mass (m^2/s^2): times the mass of a particle they
+/// are joules.
+struct EnergyBalance {
+  double start = 0;       ///< kinetic and potential energy at the start
+  double kinetic = 0;     ///< now
+  double potential = 0;   ///< now
+  double walls = 0;       ///< work of moving walls so far
+  double emitters = 0;    ///< energy of what emitters have given so far, as it was given
+  double effects = 0;     ///< work of effects so far: negative where they brake
+  double solver = 0;      ///< what the solver has changed so far: negative, for it dissipates
+  double mostGained = 0;  ///< the largest that `solver` over the number of particles ever was (m^2/s^2)
+  double stored = 0;      ///< at the start, see storedEnergy()
+  double head = 0;  ///< g H/2 of the start: what water lifts itself by as it swells, over its density error
+                    ///< (m^2/s^2, a mean)
+  double elastic = 0;                 ///< what the next step may give back, see beginStep()
+  std::vector<EnergySample> history;  ///< at most kMostSamples of them, evenly spread over the steps
+
+  static constexpr std::size_t kMostSamples = 256;
+
+  /// The state before the first step; `height` (m) is that of the fluid along gravity.
+  void begin(const EnergySums& sums, const StepState& state, double height);
+  /// A step of `dt` (s) is about to be taken. It may give back what earlier ones took out of motion and left
+  /// in density errors, no more than their undoing gives: 2 storedEnergy(), an estimate within a factor of
+  /// two, and what water lifts itself by as it swells. An impact takes several steps, in which what flies
+  /// apart comes together again, so that what is above is not gone at once: it fades by an eighth a step.
+  /// Long before is forgotten, however much has been dissipated. The first step finds all that the start has
+  /// stored.
+  void beginStep(const StepState& state, long particles, double dt, bool first);
+  /// What is to be taken back of a step of `dt` (s) (m^2/s^2, a sum over the particles), 0 where it added
+  /// nothing or kept within what beginStep() says; beyond the undoing of density errors it may add a
+  /// twentieth of the kinetic energy. Let pass is what gravity gives a particle in one step at a wall, and
+  /// `rounding` (m^2/s^2, a mean over particles).
+  double excess(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
+                double rounding) const;
+  /// A step of `dt` (s) that came from `before`, with what emitters gave at its start.
+  void record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
+              double time);
+  /// For a save.
+  void visit(StateVisitor& visitor);
+
+ private:
+  /// What the step changed that neither walls nor effects did.
+  static double bySolver(const StepState& state, const EnergySums& before, const EnergySums& now, double dt);
+  void sample(double time, long particles);
+
+  double undoing_ = 0;  ///< what undoing the density errors that the step finds may give (m^2/s^2)
+  long stride_ = 1, untilSample_ = 0;
+};
+
+/// The kinetic energy over mass (m^2/s^2, a mean over particles) that fluid gets when one step of `dt` (s)
+/// undoes its density errors C: C over the norm of its gradient is the way, that over dt the speed. The norm
+/// is that of the resting lattice, and neighbours are taken not to push into each other's way: an estimate
+/// within a factor of two. Fluid at its density at rest stores nothing.
+double storedEnergy(const StepState& state, double dt);
+
+// What is counted while a simulation runs; the report (core/io/report.h) writes it down. Names and meanings
+// are those of the report's keys.
 
 class StateVisitor;
 struct Health;
@@ -34,9 +108,9 @@ struct RunStatistics {
   double densityErrorMax = 0;
   long lostParticles = 0;
   long nonfiniteParticles = 0;
-  bool squeezed = false;      ///< walls left the fluid no room
-  double maxPenetration = 0;  ///< (m)
-  double maxSpeed = 0;        ///< (m/s)
+  bool overConstrained = false;  ///< walls left the fluid no room
+  double maxPenetration = 0;     ///< (m)
+  double maxSpeed = 0;           ///< (m/s)
   EnergyBalance energy;
   std::string gammaPicked;  ///< the gamma method that runs; empty without correction
   std::string gammaReason;  ///< why "auto" took it; empty when the scene names it
@@ -50,7 +124,27 @@ struct RunStatistics {
   /// All of it for a save, but for gammaPicked and gammaReason, which follow from the scene.
   void visit(StateVisitor& visitor);
   /// Non-finite state, lost particles or no room for the fluid: exit code 3.
-  bool failed() const { return lostParticles > 0 || nonfiniteParticles > 0 || squeezed; }
+  bool failed() const { return lostParticles > 0 || nonfiniteParticles > 0 || overConstrained; }
 };
+
+// What a step's end looks like: finite or not, how fast, how far past the walls.
+
+struct HealthLimits {
+  double mostPenetration = 0;    ///< past a wall by more than this (m) is lost: one spacing
+  Bounds scene;                  ///< out of this is lost; empty for a scene without walls
+  double farthest = 0;           ///< coordinate of the scene (m), whose rounding velocities bear
+  Vec3f centre = Vec3f::Zero();  ///< of the scene at its start: where potential energy is zero (m)
+};
+HealthLimits healthLimits(const Scene& scene);
+
+struct Health {
+  float maxSpeed = 0;        ///< (m/s)
+  float maxPenetration = 0;  ///< (m)
+  long lost = 0;
+  long nonfinite = 0;
+  EnergySums energy;           ///< of the finite particles
+  std::uint32_t firstBad = 0;  ///< id of a lost or non-finite particle, if there is one
+};
+Health inspect(const StepState& state, const HealthLimits& limits);
 
 }  // namespace migiwa

@@ -1,5 +1,3 @@
-#include "core/slim/local_fit.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/base/portable_math.h"
+#include "core/base/math.h"
+#include "core/slim/node.h"
 
 namespace migiwa {
 
@@ -184,7 +183,7 @@ LocalFit fitLocally(std::span<const OrientedPoint> points, std::span<const std::
     if ((p - centre).squaredNorm() <= reach) largest = std::max(largest, squaredDistance(node, p));
   }
   node.error = std::sqrt(largest);
-  result.sound = node.normal.allFinite() && std::isfinite(node.error);
+  result.valid = node.normal.allFinite() && std::isfinite(node.error);
   return result;
 }
 

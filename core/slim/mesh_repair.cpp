@@ -1,5 +1,3 @@
-#include "core/slim/mesh_repair.h"
-
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -9,7 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "core/base/error.h"
+#include "core/base/messages.h"
+#include "core/slim/shape_import.h"
 
 namespace migiwa {
 

@@ -1,5 +1,3 @@
-#include "core/slim/normal_estimation.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,8 +8,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "core/base/error.h"
-#include "core/slim/point_levels.h"
+#include "core/base/messages.h"
+#include "core/slim/points.h"
+#include "core/slim/shape_import.h"
 
 namespace migiwa {
 

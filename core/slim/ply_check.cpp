@@ -1,11 +1,11 @@
-#include "core/slim/ply_check.h"
-
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 
-#include "core/slim/ply_header.h"
+#include "core/slim/shape_import.h"
 
 namespace migiwa {
 
@@ -128,6 +128,103 @@ std::string plyFault(std::string_view content) {
   PlyHeader header;
   if (std::string fault = readPlyHeader(content, header); !fault.empty()) return fault;
   return header.format == PlyHeader::Format::ascii ? textFault(header) : binaryFault(header);
+}
+
+namespace {
+
+PlyType typeOf(const std::string& name) {
+  if (name == "char" || name == "int8") return {1, true, true};
+  if (name == "uchar" || name == "uint8") return {1, true, false};
+  if (name == "short" || name == "int16") return {2, true, true};
+  if (name == "ushort" || name == "uint16") return {2, true, false};
+  if (name == "int" || name == "int32") return {4, true, true};
+  if (name == "uint" || name == "uint32") return {4, true, false};
+  if (name == "float" || name == "float32") return {4, false, true};
+  if (name == "double" || name == "float64") return {8, false, true};
+  return {};
+}
+
+std::vector<std::string> wordsOf(std::string_view line) {
+  std::istringstream in{std::string(line)};
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+/// Whether a line begins with a word and holds words and spaces only. What else there may be, assimp takes
+/// for the end of a line, or for part of a word.
+bool isPlain(std::string_view line) {
+  return !line.starts_with(' ') && !line.starts_with('\t') &&
+         std::none_of(line.begin(), line.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; });
+}
+
+bool takeFormat(const std::vector<std::string>& words, PlyHeader& header) {
+  using Format = PlyHeader::Format;
+  if (words.size() != 3) return false;
+  header.format = words[1] == "ascii"                  ? Format::ascii
+                  : words[1] == "binary_little_endian" ? Format::littleEndian
+                                                       : Format::bigEndian;
+  return header.format != Format::bigEndian || words[1] == "binary_big_endian";
+}
+
+/// Elements without properties have no place in the file, unless there are none of them.
+bool lastIsWhole(const PlyHeader& header) {
+  return header.elements.empty() || header.elements.back().count == 0 ||
+         !header.elements.back().properties.empty();
+}
+
+/// `most`: elements that a file of this size can hold.
+bool takeElement(const std::vector<std::string>& words, std::uint64_t most, PlyHeader& header) {
+  // Digits at the front of a name are the count to assimp.
+  if (words.size() != 3 || std::isalpha(static_cast<unsigned char>(words[1].front())) == 0 ||
+      !lastIsWhole(header))
+    return false;
+  PlyElement element;
+  std::istringstream number(words[2]);
+  if (!(number >> element.count) || !number.eof() || element.count > most) return false;
+  header.elements.push_back(element);
+  return true;
+}
+
+bool takeProperty(const std::vector<std::string>& words, PlyHeader& header) {
+  if (words.size() < 3 || header.elements.empty()) return false;
+  const bool list = words[1] == "list";
+  if (words.size() != (list ? 5 : 3)) return false;
+  PlyProperty property{typeOf(words[list ? 3 : 1]), list ? typeOf(words[2]) : PlyType()};
+  if (property.type.bytes == 0 || (list && !property.listCount.whole)) return false;
+  header.elements.back().properties.push_back(property);
+  return true;
+}
+
+/// Takes a line of the header over; false when it is none.
+bool take(const std::vector<std::string>& words, std::uint64_t most, PlyHeader& header) {
+  if (words.empty()) return false;
+  const std::string& kind = words.front();
+  if (kind == "comment" || kind == "obj_info") return true;
+  if (kind == "format") return takeFormat(words, header);
+  if (kind == "element") return takeElement(words, most, header);
+  return kind == "property" && takeProperty(words, header);
+}
+
+}  // namespace
+
+std::string readPlyHeader(std::string_view content, PlyHeader& header) {
+  if (!content.starts_with("ply")) return "expected a PLY file, found one that does not begin with \"ply\"";
+  header.body = content;
+  while (true) {
+    const std::size_t end = header.body.find('\n');
+    if (end == header.body.npos) return "expected a PLY file, found one that ends within its header";
+    std::string_view line = header.body.substr(0, end);
+    header.body.remove_prefix(end + 1);
+    if (++header.lines == 1) continue;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::vector<std::string> words = isPlain(line) ? wordsOf(line) : std::vector<std::string>();
+    if (words == std::vector<std::string>{"end_header"} && lastIsWhole(header)) return {};
+    if (!take(words, content.size(), header))
+      return "expected the header of a PLY file, found something else in its line " +
+             std::to_string(header.lines);
+  }
 }
 
 }  // namespace migiwa

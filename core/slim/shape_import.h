@@ -1,14 +1,18 @@
-// Meshes and oriented point clouds from files: OBJ, PLY, STL and what else assimp reads.
+// Meshes and points from files, checked and repaired.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/slim/oriented_points.h"
-#include "core/slim/triangle_mesh.h"
+#include "core/slim/points.h"
 
 namespace migiwa {
+
+// Meshes and oriented point clouds from files: OBJ, PLY, STL and what else assimp reads.
 
 /// What a file holds, checked and repaired where that is safe: a mesh, or points with normals, which
 /// are estimated where the file has none.
@@ -28,5 +32,74 @@ ImportedShape importShape(const std::filesystem::path& file);
 
 /// The points that a SLIM surface of about so many nodes (0: not known) is fitted to.
 OrientedPoints fitPoints(const ImportedShape& shape, int nodes);
+
+// Makes points with normals as files hold them into points whose normals agree.
+
+/// Drops points that are there twice, estimates normals where all are zero, turns those against most of their
+/// neighbours, and all of them if they point inwards. Adds a sentence to `notes` for each kind of repair.
+/// Returns whether the points seem to cover a closed surface, on which normals cancel. Throws InputError at
+/// `place` for fewer than 50 points.
+bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
+                 std::vector<std::string>& notes);
+
+// Makes a mesh as files hold them into one that has an inside and an outside.
+
+/// Welds vertices at the same place, drops triangles that are degenerate or there twice, and turns triangles
+/// so that all face outwards. Adds a sentence to `notes` for each kind of repair, and for an open mesh.
+/// Returns whether the mesh is closed. Throws InputError at `place` for fewer than 4 triangles, edges of more
+/// than two triangles and surfaces with one side only.
+bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
+
+// Normals for points that have none, or none that agree: planes through neighbours, whose sides are made to
+// agree along the spanning tree that turns least (Hoppe, DeRose, Duchamp, McDonald and Stuetzle 1992, Surface
+// reconstruction from unorganized points), and then to face outwards.
+
+/// Gives every point the normal of the plane of best fit through its neighbours, out of the solid that the
+/// points cover all around. There must be at least 50 points, no two at the same place. Throws InputError at
+/// `place` where inside and outside cannot be told apart: on an open surface, or where two sheets are too
+/// close for the points' distance. Sorts the points anew, the same way every time.
+void estimateNormals(std::vector<OrientedPoint>& points, const std::string& place);
+
+/// Turns normals so that they agree and face outwards. Returns how many were turned; none where they agree
+/// already, and none where it cannot be decided.
+std::size_t orientNormals(std::vector<OrientedPoint>& points);
+
+// Whether a PLY file holds all that its header promises. assimp 5.2 never comes back from a header that does
+// not end, makes up zeros for what is missing of the rest, and asks for memory for as many corners as a face
+// says.
+
+/// What is wrong with a PLY file of this content, as "expected ..., found ..."; empty where it seems whole.
+std::string plyFault(std::string_view content);
+
+// The header of a PLY file: which elements follow, and of which numbers each consists.
+
+/// A number of a binary file; of text only the word matters.
+struct PlyType {
+  std::size_t bytes = 0;  ///< 0: none
+  bool whole = false;     ///< an integer
+  bool negative = false;  ///< may be below 0
+};
+
+/// One number of an element, or a list of them: how many, then so many.
+struct PlyProperty {
+  PlyType type;
+  PlyType listCount;  ///< of no bytes: a single number
+};
+
+struct PlyElement {
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  enum class Format { ascii, littleEndian, bigEndian } format = Format::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t lines = 0;  ///< up to and with `end_header`
+  std::string_view body;  ///< what follows
+};
+
+/// Reads the header of a file of this content, which has to outlive the result. Returns what is wrong with
+/// it, as "expected ..., found ..."; empty where nothing is.
+std::string readPlyHeader(std::string_view content, PlyHeader& header);
 
 }  // namespace migiwa

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/boundary/handling.h"
-#include "core/sph/kernel_type.h"
+#include "core/gamma/gamma_method.h"
+#include "core/sph/kernels.h"
 
 namespace migiwa {
 
@@ -44,5 +44,18 @@ struct BoundaryParameters {
   int directions = 256;  ///< of the method "directions" (range: [8, 65536])
   int samples = 100000;  ///< of the method "monte_carlo" (range: [100, 100000000])
 };
+
+/// The mechanisms that keep hard cases stable. They act in those alone, and leave every other run as it is to
+/// the last bit; tests/hard_cases compares with runs without them. Where fluid starts in walls or on top of
+/// fluid, and where a step leaves it so, it is moved apart without gaining speed
+/// (core/simulation/simulation.cpp); continuous collision lets no move pass through thin or moving walls
+/// (core/solver/collision.cpp); overfull cells are spread before their pairs are listed
+/// (core/solver/guards.cpp); a wall that stands still gives no speed (core/solver/collision.cpp); energy that
+/// a step adds from nothing is taken back (core/solver/guards.cpp); a step that ends with a value that is not
+/// finite, or that walls leave no solution, is refused (core/solver/step.cpp); gamma has a floor
+/// (core/solver/wall_gamma.cpp); pairs on one point get a direction (core/solver/pairs_simd-inl.h).
+/// Projection onto the fluid side of walls, the clamp of the density constraint and the CFL rule are none of
+/// them: they belong to the method.
+enum class Guards { on, off };
 
 }  // namespace migiwa

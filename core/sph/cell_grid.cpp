@@ -1,9 +1,9 @@
-#include "core/sph/cell_grid.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "core/sph/neighbours.h"
 
 namespace migiwa {
 

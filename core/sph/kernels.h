@@ -1,14 +1,23 @@
+// The smoothing kernels: values, slopes, integrals, and the lattice of fluid at rest.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+namespace migiwa {
+
+// The smoothing kernels a scene can name.
+
+enum class KernelType { poly6, spiky, cubicSpline, wendlandC2 };
+inline constexpr std::array<std::string_view, 4> kKernelNames{"poly6", "spiky", "cubic_spline",
+                                                              "wendland_c2"};
+
 // The smoothing kernels W(q), q = r/h, for support 1, with the closed forms of gamma for one plane ([FM] Eqs.
 // 6 to 8). Multiply W by 1/h^3 and its derivative by 1/h^4 for SI units. planeGamma(e) is the part of the
 // kernel on the fluid side of a plane at signed distance e = d/h; planeGammaSlope(e) its derivative, so grad
 // gamma = slope * n / h. The forms in T = 1 - e do not cancel in float.
-#pragma once
-
-#include <numbers>
-
-#include "core/sph/kernel_type.h"
-
-namespace migiwa {
 
 namespace kernel_detail {
 
@@ -154,5 +163,74 @@ decltype(auto) withKernel(KernelType type, const Body& body) {
   }
   return body(Poly6{});
 }
+
+// The mass of a kernel of support 1 within a radius, G(r) = 4 pi integral_0^r W s^2 ds for r in [0, 1]; G(1)
+// =
+// 1. [FM] Eq. 7. Its twin over vectors, with the slope, is in core/sph/kernels_simd-inl.h.
+
+template <class Kernel>
+struct RadialIntegrals;
+
+template <>
+struct RadialIntegrals<Poly6> {
+  static constexpr float mass(float r) {
+    const float r2 = r * r;
+    return r * r2 * (105 + r2 * (-189 + r2 * (135 - 35 * r2))) * 0.0625F;
+  }
+};
+
+template <>
+struct RadialIntegrals<Spiky> {
+  static constexpr float mass(float r) { return r * r * r * (20 + r * (-45 + r * (36 - 10 * r))); }
+};
+
+template <>
+struct RadialIntegrals<CubicSpline> {
+  static constexpr float mass(float r) {
+    const float inner = 32 * r * r * r * (1.0F / 3 + r * r * (-1.2F + r));
+    const float outer = 64 * r * r * r * (1.0F / 3 + r * (-0.75F + r * (0.6F - r * (1.0F / 6)))) - 1.0F / 15;
+    return r <= 0.5F ? inner : outer;
+  }
+};
+
+template <>
+struct RadialIntegrals<WendlandC2> {
+  static constexpr float mass(float r) {
+    const float r2 = r * r;
+    return r * r2 * (14 + r2 * (-84 + r * (140 + r * (-90 + 21 * r))));
+  }
+};
+
+// What the kernels sum to on the cubic lattice that a scene starts from. The rest density is that sum, so
+// that a resting lattice has C = 0, and Eq. 11's epsilon is measured in units of its constraint gradients.
+
+struct RestingLattice {
+  /// m / (rho0 h^3): what one particle adds to rho/rho0 is this times W(q).
+  float massRatio;
+  /// Sum over the neighbours of |h grad_k C|^2 at rest (1).
+  float squaredGradients;
+};
+
+/// Sum of term(q) over the places of the lattice within the support radius of one, itself left out; q is the
+/// distance over the support radius.
+template <class Term>
+double latticeSum(double supportRatio, const Term& term) {
+  const int reach = static_cast<int>(std::ceil(supportRatio));
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const int square = i * i + j * j + k * k;
+        if (square == 0) continue;
+        const double q = std::sqrt(static_cast<double>(square)) / supportRatio;
+        if (q < 1) sum += term(q);
+      }
+    }
+  }
+  return sum;
+}
+
+/// `supportRatio`: support radius over spacing, in [1.2, 4].
+RestingLattice restingLattice(KernelType kernel, double supportRatio);
 
 }  // namespace migiwa

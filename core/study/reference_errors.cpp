@@ -1,13 +1,11 @@
-#include "core/study/reference_errors.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/boundary/boundary.h"
-#include "core/boundary/gamma_method.h"
-#include "core/sph/cell_grid.h"
+#include "core/gamma/gamma_method.h"
 #include "core/sph/kernels.h"
-#include "core/sph/resting_lattice.h"
+#include "core/sph/neighbours.h"
+#include "core/study/study.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa {
 

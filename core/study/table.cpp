@@ -1,12 +1,10 @@
-#include "core/study/table.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <functional>
 
-#include "core/study/pareto.h"
+#include "core/study/study.h"
 
 namespace migiwa {
 
@@ -126,7 +124,7 @@ std::vector<Column> columns(const StudyPlan& plan, const std::vector<FinishedRun
   return all;
 }
 
-std::optional<double> sound(const RunRecord& record, const char* column) {
+std::optional<double> valid(const RunRecord& record, const char* column) {
   return record.trouble.empty() ? record.measure(column) : std::nullopt;
 }
 
@@ -142,35 +140,35 @@ const std::vector<AccuracyMeasure>& accuracyMeasures() {
   using Value = std::optional<double>;
   static const std::vector<AccuracyMeasure> measures{
       {"density_error_mean", "density error, mean", "",
-       [](const RunRecord& r) { return sound(r, "density_error_mean"); }},
+       [](const RunRecord& r) { return valid(r, "density_error_mean"); }},
       {"density_error_max", "density error, largest", "",
-       [](const RunRecord& r) { return sound(r, "density_error_max"); }},
+       [](const RunRecord& r) { return valid(r, "density_error_max"); }},
       {"gamma_error", "error of γ near walls, mean", "",
-       [](const RunRecord& r) { return sound(r, "gamma_error"); }},
+       [](const RunRecord& r) { return valid(r, "gamma_error"); }},
       {"gamma_gradient_error", "error of h∇γ near walls, mean", "",
-       [](const RunRecord& r) { return sound(r, "gamma_gradient_error"); }},
+       [](const RunRecord& r) { return valid(r, "gamma_gradient_error"); }},
       {"height_error", "|settled height / expected − 1|", "",
        [](const RunRecord& r) {
-         const Value found = sound(r, "height_error");
+         const Value found = valid(r, "height_error");
          return found ? Value(std::abs(*found)) : std::nullopt;
        }},
       {"edge_crowding", "|edge crowding − 1|", "",
        [](const RunRecord& r) {
-         const Value found = sound(r, "edge_crowding");
+         const Value found = valid(r, "edge_crowding");
          return found ? Value(std::abs(*found - 1)) : std::nullopt;
        }},
       {"near_wall_spacing_p1", "1 − spacing near walls, 1st percentile", "",
        [](const RunRecord& r) {
-         const Value found = sound(r, "near_wall_spacing_p1");
+         const Value found = valid(r, "near_wall_spacing_p1");
          return found ? Value(std::max(1 - *found, 0.0)) : std::nullopt;
        }},
       {"pressure_error", "pressure off ρgz, rms over ρgH", "",
-       [](const RunRecord& r) { return sound(r, "pressure_error"); }},
-      {"rms_speed", "speed at the end, rms", "m/s", [](const RunRecord& r) { return sound(r, "rms_speed"); }},
+       [](const RunRecord& r) { return valid(r, "pressure_error"); }},
+      {"rms_speed", "speed at the end, rms", "m/s", [](const RunRecord& r) { return valid(r, "rms_speed"); }},
       {"energy_gained", "energy that the solver has added, largest", "J/kg",
-       [](const RunRecord& r) { return sound(r, "energy_gained"); }},
+       [](const RunRecord& r) { return valid(r, "energy_gained"); }},
       {"wall_error", "distance of the fitted wall from its shape, mean", "m",
-       [](const RunRecord& r) { return sound(r, "wall_error"); }},
+       [](const RunRecord& r) { return valid(r, "wall_error"); }},
   };
   return measures;
 }

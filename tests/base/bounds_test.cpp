@@ -1,6 +1,6 @@
-#include "core/base/bounds.h"
-
 #include <gtest/gtest.h>
+
+#include "core/base/math.h"
 
 namespace migiwa {
 namespace {

@@ -1,9 +1,9 @@
-#include "core/base/error.h"
-
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

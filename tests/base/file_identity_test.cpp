@@ -1,11 +1,10 @@
 // One file is told from another by its content alone, and by that of the files which hold a part of it.
-#include "core/base/file_identity.h"
-
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/messages.h"
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {

@@ -1,11 +1,10 @@
 // The normal distribution against quadrature of its density.
-#include "core/base/normal_distribution.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "core/base/math.h"
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {

@@ -1,11 +1,11 @@
 // The functions against the C library's in long double, which has eleven digits (binary) more.
-#include "core/base/portable_math.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "core/base/math.h"
 
 namespace migiwa {
 namespace {

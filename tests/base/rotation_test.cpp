@@ -1,6 +1,6 @@
-#include "core/base/rotation.h"
-
 #include <gtest/gtest.h>
+
+#include "core/base/fields.h"
 
 namespace migiwa {
 namespace {

@@ -1,9 +1,9 @@
-#include "core/base/stage_times.h"
-
 #include <chrono>
 #include <thread>
 
 #include <gtest/gtest.h>
+
+#include "core/base/parallel.h"
 
 namespace migiwa {
 namespace {

@@ -6,11 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/boundary/box.h"
-#include "core/boundary/gamma_method.h"
-#include "core/boundary/plane.h"
-#include "core/boundary/polynomial.h"
-#include "core/boundary/sphere.h"
+#include "core/gamma/gamma_method.h"
+#include "core/walls/shapes.h"
 
 namespace migiwa {
 namespace {

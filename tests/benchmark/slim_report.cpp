@@ -11,13 +11,12 @@
 #include <functional>
 #include <string>
 
-#include "core/base/error.h"
-#include "core/boundary/gridded_surface.h"
-#include "core/boundary/slim_surface.h"
-#include "core/io/output_file.h"
-#include "core/slim/bowl.h"
-#include "core/slim/mesh_sampling.h"
-#include "core/slim/slim_fitting.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/slim/fit.h"
+#include "core/slim/points.h"
+#include "core/walls/gridded.h"
+#include "core/walls/slim_wall.h"
 #include "tests/slim/error_orders.h"
 
 namespace migiwa {

@@ -15,9 +15,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/base/state_hash.h"
-#include "core/effects/effect.h"
-#include "core/solver/stages.h"
+#include "core/base/hash.h"
+#include "core/solver/effect.h"
+#include "core/solver/step.h"
 #include "tests/benchmark/machine_peak.h"
 #include "tests/support/dense_tank.h"
 #include "tests/support/scalar_passes.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/simulation/simulation.h"
-#include "core/sph/resting_lattice.h"
+#include "core/sph/kernels.h"
 #include "tests/support/moments.h"
 #include "tests/support/test_effects.h"
 #include "tests/support/test_scenes.h"

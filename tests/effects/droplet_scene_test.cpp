@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "tests/support/moments.h"
 

@@ -8,7 +8,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 
 namespace {

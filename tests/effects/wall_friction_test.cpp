@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/plane.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/shapes.h"
 #include "tests/support/moments.h"
 #include "tests/support/test_effects.h"
 #include "tests/support/test_scenes.h"

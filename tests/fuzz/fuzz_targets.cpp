@@ -10,15 +10,15 @@
 
 #include <unistd.h>
 
-#include "core/base/checksum.h"
-#include "core/base/error.h"
-#include "core/boundary/surface.h"
+#include "core/base/hash.h"
+#include "core/base/messages.h"
 #include "core/io/points_csv.h"
 #include "core/io/save_file.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
+#include "core/slim/file.h"
 #include "core/slim/shape_import.h"
-#include "core/slim/slim_file.h"
+#include "core/walls/surface.h"
 
 /// assimp leaks what it had read of a file when it refuses it.
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT: the name is the sanitizer's

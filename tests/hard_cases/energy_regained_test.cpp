@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "tests/hard_cases/energy_watch.h"
 
 namespace migiwa::testing {

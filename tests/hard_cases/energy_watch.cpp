@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/sph/resting_lattice.h"
+#include "core/sph/kernels.h"
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {

@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
-#include "core/simulation/state_visitor.h"
-#include "core/solver/step_state.h"
+#include "core/simulation/state.h"
+#include "core/solver/state.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {

@@ -5,8 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "core/boundary/boundary.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
+#include "core/walls/boundary.h"
 #include "tests/hard_cases/energy_watch.h"
 
 namespace migiwa::testing {
@@ -63,8 +63,8 @@ Scene sceneOf(const HardCase& hardCase, const std::string& method) {
   return scene;
 }
 
-Observed observe(const Scene& scene, double until, int threads) {
-  Simulation simulation(scene, threads);
+Observed observe(const Scene& scene, double until, int threads, Guards guards) {
+  Simulation simulation(scene, threads, guards);
   const Boundary boundary(scene.surfaces);
   Observed seen;
   EnergyWatch energy(simulation);

@@ -69,7 +69,7 @@ std::vector<HardCase> hardCases();
 Scene sceneOf(const HardCase& hardCase, const std::string& method = {});
 
 /// Runs a scene for a time and watches every frame.
-Observed observe(const Scene& scene, double until, int threads = 1);
+Observed observe(const Scene& scene, double until, int threads = 1, Guards guards = Guards::on);
 
 /// What does not hold, one sentence each.
 std::vector<std::string> violations(const HardCase& hardCase, const Observed& seen);

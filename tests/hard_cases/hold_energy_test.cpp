@@ -1,14 +1,12 @@
 // Taking back energy that a step made from nothing, against sums by hand: where it was gained, no more than
 // that, and no momentum with it.
-#include "core/solver/hold_energy.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
-#include "core/solver/pbf_solver.h"
-#include "core/sph/resting_lattice.h"
+#include "core/solver/step.h"
+#include "core/sph/kernels.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa::testing {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/io/output_file.h"
+#include "core/base/files.h"
 #include "tests/hard_cases/hard_case.h"
 
 int main(int argc, char** argv) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {

@@ -73,7 +73,7 @@ with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run har
   whether two particles ever meet on one point, in a corner or after an impact, may hang on the last bit. Frames that had to be
   divided are no trouble, but are named here, as `substeps`.
 - **Without guards** is what the same case does in a program from which every guard of
-  [core/base/guard.h](../../core/base/guard.h) is left out: "same hash" where none has acted, "holds" where others than those
+  [core/solver/parameters.h](../../core/solver/parameters.h) is left out: "same hash" where none has acted, "holds" where others than those
   listed have, without need. Its scenes have no CFL rule either (`solver.cfl` 0).
 
 )";

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
-#include "core/boundary/plane.h"
-#include "core/solver/pbf_solver.h"
-#include "core/sph/resting_lattice.h"
+#include "core/solver/step.h"
+#include "core/sph/kernels.h"
+#include "core/walls/boundary.h"
+#include "core/walls/shapes.h"
 
 namespace migiwa::testing {
 namespace {
@@ -59,7 +59,7 @@ TEST(WallJump, GivesNoSpeed) {
   EXPECT_FLOAT_EQ(step.positionOf(1).y(), kSpacing / 2);
   // A hundredth of the margin a step is what a particle at a wall may stand too near to it.
   EXPECT_LE(step.velocityOf(1).norm(), 0.0101F * kSpacing / 2 / kStep);
-  EXPECT_EQ(step.state().wallJumps.size(), 1U);
+  EXPECT_EQ(step.state().suppressedPushes.size(), 1U);
 }
 
 TEST(WallJump, OfARefusedStepIsTakenBack) {
@@ -69,7 +69,7 @@ TEST(WallJump, OfARefusedStepIsTakenBack) {
   EXPECT_EQ(step.positionOf(1), StepAtFloor::kWithin);
   EXPECT_EQ(step.velocityOf(1), Vec3f::Zero());
   EXPECT_EQ(step.positionOf(0), Vec3f(3, 5, 3));
-  EXPECT_TRUE(step.state().wallJumps.empty());
+  EXPECT_TRUE(step.state().suppressedPushes.empty());
 }
 
 }  // namespace

@@ -22,9 +22,10 @@ struct Printed {
 
 /// Runs a probe, which without its guards may fall or find no end.
 Printed probe(Guards guards, const std::string& arguments, const std::string& before = "exec") {
-  const std::string program = guards == Guards::on ? MIGIWA_GUARDED_PROBE : MIGIWA_UNGUARDED_PROBE;
+  const std::string program = MIGIWA_GUARD_PROBE;
   // An own shell quotes nothing: what is passed are names and numbers of this file's.
-  std::FILE* const pipe = popen((before + " '" + program + "' " + arguments).c_str(), "r");
+  std::FILE* const pipe = popen(
+      (before + " '" + program + "' " + (guards == Guards::on ? "on " : "off ") + arguments).c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + program);
   Printed printed;
   std::array<char, 512> line{};

@@ -1,5 +1,4 @@
-// The program without its guards (core/base/guard.h), run beside the one with them: guard_probe.cpp, built
-// both ways.
+// Runs without guards (core/solver/parameters.h) beside those with them, each by guard_probe.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +8,6 @@
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {
-
-enum class Guards { on, off };
 
 /// What becomes of a case without guards, in a few words; `hash` is that of the run with them.
 std::string withoutGuards(const HardCase& hardCase, std::uint64_t hash);

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/io/output_file.h"
+#include "core/base/files.h"
 #include "tests/io/drop_test.h"
 #include "tests/io/particle_files.h"
 

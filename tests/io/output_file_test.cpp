@@ -1,12 +1,11 @@
-#include "core/io/output_file.h"
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

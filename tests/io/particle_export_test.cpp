@@ -14,8 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
-#include "core/io/export_schedule.h"
+#include "core/base/messages.h"
 #include "core/simulation/simulation.h"
 #include "tests/io/particle_files.h"
 #include "tests/support/test_scenes.h"

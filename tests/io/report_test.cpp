@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/io/output_file.h"
-#include "core/simulation/run.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/simulation/measures.h"
 
 namespace migiwa {
 namespace {

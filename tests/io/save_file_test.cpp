@@ -11,12 +11,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/base/checksum.h"
-#include "core/base/error.h"
-#include "core/boundary/gamma_method.h"
-#include "core/boundary/sphere.h"
+#include "core/base/hash.h"
+#include "core/base/messages.h"
+#include "core/gamma/gamma_method.h"
 #include "core/io/report.h"
-#include "core/simulation/run.h"
+#include "core/simulation/measures.h"
+#include "core/walls/shapes.h"
 #include "tests/support/same_stamp.h"
 #include "tests/support/test_scenes.h"
 

@@ -1,9 +1,9 @@
-#include "app/viewer/camera_control.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "app/render/projection.h"
 
 namespace migiwa {
 namespace {

@@ -1,11 +1,11 @@
 // The colour map against Oklab's definition: from sRGB bytes back to lightness, with the forward matrices
 // only.
-#include "app/render/color_map.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "app/render/image.h"
 
 namespace migiwa {
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line.h"
-#include "app/platform/glfw_window.h"
-#include "core/base/error.h"
+#include "app/platform/context.h"
+#include "core/base/messages.h"
 #include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
 

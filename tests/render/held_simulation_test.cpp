@@ -1,7 +1,7 @@
 // A simulation that has to wait, for "What if" above all: what it refuses meanwhile, and how it goes on.
 #include <gtest/gtest.h>
 
-#include "app/viewer/what_if_session.h"
+#include "app/session/session.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
+#include "app/platform/context.h"
 #include "app/viewer/viewer.h"
 #include "tests/render/test_scene.h"
 

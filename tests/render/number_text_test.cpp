@@ -1,8 +1,8 @@
-#include "app/ui/number_text.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

@@ -1,8 +1,7 @@
-#include "app/commands/option_text.h"
-
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "app/commands/command.h"
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

@@ -1,7 +1,7 @@
 // Panels and mouse through the same frame() that a window uses, with input made up.
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
+#include "app/platform/context.h"
 #include "app/viewer/viewer.h"
 #include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
@@ -14,7 +14,9 @@ constexpr int kWidth = 1280, kHeight = 720;
 
 class PanelsTest : public ::testing::Test {
  protected:
-  Wishes frame(const InputState& input) { return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight); }
+  UiCommands frame(const InputState& input) {
+    return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight);
+  }
 
   static InputState mouseAt(float x, float y, bool pressed = false) {
     InputState input;
@@ -24,11 +26,11 @@ class PanelsTest : public ::testing::Test {
     return input;
   }
 
-  /// Moves there, presses for two frames, lets go: the wishes of all frames together.
-  Wishes click(float x, float y) {
-    Wishes all;
+  /// Moves there, presses for two frames, lets go: the commands of all frames together.
+  UiCommands click(float x, float y) {
+    UiCommands all;
     for (const bool pressed : {false, false, true, true, false, false}) {
-      const Wishes now = frame(mouseAt(x, y, pressed));
+      const UiCommands now = frame(mouseAt(x, y, pressed));
       all.play |= now.play, all.pause |= now.pause, all.step |= now.step, all.reset |= now.reset;
       all.settings |= now.settings, all.savePicture |= now.savePicture;
     }
@@ -52,9 +54,9 @@ TEST_F(PanelsTest, PlayStepAndResetAreAskedForByTheirButtons) {
   EXPECT_TRUE(click(160, 40).step);
   EXPECT_TRUE(click(260, 40).reset);
   run_.playing = true;
-  const Wishes wishes = click(55, 40);
-  EXPECT_TRUE(wishes.pause);
-  EXPECT_FALSE(wishes.play);
+  const UiCommands commands = click(55, 40);
+  EXPECT_TRUE(commands.pause);
+  EXPECT_FALSE(commands.play);
 }
 
 TEST_F(PanelsTest, StoppedSimulationOffersResetOnly) {
@@ -111,8 +113,8 @@ TEST(EffectPanels, AreThereForTheEffectsOfTheSceneAndChangeThem) {
       input.mouseInside = true;
       input.mouseX = 280, input.mouseY = y;
       input.buttons[0] = pressed;
-      const Wishes wishes = viewer.frame(snapshot.view(), RunStatus{}, input, kWidth, 1400);
-      changed |= wishes.settings && viewer.settings().effects[0].effect != scene.effects[0].effect;
+      const UiCommands commands = viewer.frame(snapshot.view(), RunStatus{}, input, kWidth, 1400);
+      changed |= commands.settings && viewer.settings().effects[0].effect != scene.effects[0].effect;
     }
   }
   EXPECT_TRUE(changed);

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
-#include "app/ui/number_text.h"
+#include "app/platform/context.h"
 #include "app/viewer/viewer.h"
+#include "core/base/messages.h"
 #include "core/simulation/simulation.h"
 #include "tests/render/shown_text.h"
 #include "tests/render/test_scene.h"
@@ -70,17 +70,19 @@ class Hands {
 class Session : public ::testing::Test {
  protected:
   /// As the simulation's thread would, but at once.
-  void carryOut(const Wishes& wishes) {
-    if (wishes.reset) simulation_ = std::make_unique<Simulation>(scene_, 1), run_ = {};
-    if (wishes.reset || wishes.settings) simulation_->apply(viewer_.settings());
-    if (wishes.play) run_.playing = !run_.stopped;
-    if (wishes.pause || wishes.step) run_.playing = false;
-    if ((run_.playing || wishes.step) && !run_.stopped) simulation_->advanceFrame();
+  void applyRequest(const UiCommands& commands) {
+    if (commands.reset) simulation_ = std::make_unique<Simulation>(scene_, 1), run_ = {};
+    if (commands.reset || commands.settings) simulation_->apply(viewer_.settings());
+    if (commands.play) run_.playing = !run_.stopped;
+    if (commands.pause || commands.step) run_.playing = false;
+    if ((run_.playing || commands.step) && !run_.stopped) simulation_->advanceFrame();
     run_.stopped = simulation_->stopped();
     if (run_.stopped) run_.playing = false;
     frame_.assign(simulation_->drawnView());
   }
-  Wishes frame(const InputState& input) { return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight); }
+  UiCommands frame(const InputState& input) {
+    return viewer_.frame(frame_.view(), run_, input, kWidth, kHeight);
+  }
 
   std::unique_ptr<GlContext> context_ = makeEglContext();
   Scene scene_ = smallScene();
@@ -94,7 +96,7 @@ using RandomInput = Session;
 
 TEST_F(RandomInput, ShowsFiniteNumbersAndHasEffects) {
   run_.playing = true;
-  carryOut({});
+  applyRequest({});
   double latest = 0;
   bool turned = false, changed = false;
   for (const unsigned seed : {1U, 2U}) {
@@ -102,8 +104,8 @@ TEST_F(RandomInput, ShowsFiniteNumbersAndHasEffects) {
     for (int k = 0; k < kFrames; ++k) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed << ", frame " << k);
       const double time = frame_.info.time;
-      const Wishes wishes = frame(hands.next());
-      carryOut(wishes);
+      const UiCommands commands = frame(hands.next());
+      applyRequest(commands);
       const std::string text = shownText();
       ASSERT_NE(text.find(formatNumber("%.3f s", time)), std::string::npos) << time << ": " << text;
       ASSERT_FALSE(showsNonFinite(text)) << text;
@@ -112,7 +114,7 @@ TEST_F(RandomInput, ShowsFiniteNumbersAndHasEffects) {
                   std::isfinite(view.clip.at));
       latest = std::max(latest, time);
       turned |= view.camera != scene_.view.camera;
-      changed |= wishes.settings;
+      changed |= commands.settings;
     }
   }
   EXPECT_GT(latest, 0.01) << "the simulation never went on";
@@ -125,7 +127,7 @@ using ShownText = Session;
 
 TEST_F(ShownText, HoldsWhatPanelsSay) {
   run_ = {false, true, "a speed of -nan m/s"};
-  carryOut({});
+  applyRequest({});
   run_.stopped = true;
   frame(InputState{});
   const std::string text = shownText();

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
-#include "app/render/png.h"
-#include "app/viewer/editing.h"
-#include "core/io/output_file.h"
+#include "app/platform/context.h"
+#include "app/render/image.h"
+#include "app/viewer/viewer.h"
+#include "core/base/files.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
@@ -35,9 +35,9 @@ class SceneEditorTest : public testing::Test {
 
   void frame(const InputState& input) {
     simulation_->takeFrame(frame_);
-    const Wishes wishes = viewer_->frame(frame_.view(), simulation_->status(), input, kWidth, kHeight);
-    keepState(wishes, session_, *simulation_);
-    carryOut(editor_, session_, viewer_->settings(), viewer_->view());
+    const UiCommands commands = viewer_->frame(frame_.view(), simulation_->status(), input, kWidth, kHeight);
+    keepState(commands, session_, *simulation_);
+    applyRequest(editor_, session_, viewer_->settings(), viewer_->view());
   }
   void idle(int frames) {
     for (int k = 0; k < frames; ++k) frame(InputState{});
@@ -93,7 +93,7 @@ class SceneEditorTest : public testing::Test {
     for (int k = 0; k < 4 && !(change = session_.poll()); ++k) session_.wait();
     ASSERT_TRUE(change);
     tellEditor(*change, session_, editor_);
-    if (change->scene) takeOver(*change, session_, *viewer_, simulation_);
+    if (change->scene) applyChange(*change, session_, *viewer_, simulation_);
     idle(2);
   }
 

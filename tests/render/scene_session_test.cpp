@@ -1,6 +1,4 @@
 // A scene's file that is edited while its simulation is there.
-#include "app/viewer/scene_session.h"
-
 #include <fstream>
 #include <thread>
 
@@ -9,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/session/session.h"
 #include "core/simulation/simulation.h"
 #include "tests/render/test_scene.h"
 #include "tests/support/same_stamp.h"

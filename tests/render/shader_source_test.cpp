@@ -1,12 +1,11 @@
-#include "app/render/shader_source.h"
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "app/render/gl.h"
+#include "core/base/messages.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {

@@ -1,6 +1,4 @@
 // The simulation's thread without a window; run it under the thread sanitizer, too.
-#include "app/viewer/simulation_thread.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -8,9 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/sphere.h"
+#include "app/session/session.h"
 #include "core/io/save_file.h"
-#include "core/scene/scene_writer.h"
+#include "core/scene/scene_file.h"
+#include "core/walls/shapes.h"
 #include "tests/render/test_scene.h"
 #include "tests/support/test_effects.h"
 

@@ -7,7 +7,7 @@
 
 #include "app/command_line.h"
 #include "app/commands/command.h"
-#include "core/slim/slim_file.h"
+#include "core/slim/file.h"
 #include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
+#include "app/platform/context.h"
 #include "app/render/renderer.h"
 #include "tests/render/test_scene.h"
 

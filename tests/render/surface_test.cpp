@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
+#include "app/platform/context.h"
 #include "app/render/renderer.h"
-#include "core/boundary/slim_surface.h"
-#include "core/slim/slim_fit.h"
+#include "core/slim/fit.h"
+#include "core/walls/slim_wall.h"
 #include "tests/render/test_scene.h"
 #include "tests/slim/exact_shapes.h"
 

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 

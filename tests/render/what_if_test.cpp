@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
-#include "app/render/png.h"
+#include "app/platform/context.h"
+#include "app/render/image.h"
+#include "app/session/session.h"
 #include "app/viewer/viewer.h"
-#include "app/viewer/what_if_session.h"
-#include "core/io/output_file.h"
+#include "core/base/files.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

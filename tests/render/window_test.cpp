@@ -7,13 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "app/platform/egl_context.h"
-#include "app/platform/glfw_window.h"
-#include "app/ui/scene_editor.h"
+#include "app/platform/context.h"
+#include "app/session/session.h"
+#include "app/session/ui_state.h"
 #include "app/viewer/viewer.h"
-#include "app/viewer/what_if_session.h"
-#include "app/viewer/window_loop.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "tests/render/test_scene.h"
 

@@ -1,10 +1,10 @@
-#include "core/scene/default_camera.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
+
+#include "core/scene/scene.h"
 
 namespace migiwa {
 namespace {

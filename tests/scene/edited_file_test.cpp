@@ -9,12 +9,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "core/boundary/gamma_method.h"
-#include "core/boundary/slim_source.h"
-#include "core/scene/scene_files.h"
-#include "core/scene/scene_identity.h"
-#include "core/scene/scene_writer.h"
-#include "core/slim/slim_file.h"
+#include "core/gamma/gamma_method.h"
+#include "core/scene/json.h"
+#include "core/scene/scene_file.h"
+#include "core/slim/file.h"
+#include "core/walls/slim_wall.h"
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/box_source.h"
-#include "core/scene/sphere_source.h"
+#include "core/scene/sources.h"
 
 namespace migiwa {
 namespace {

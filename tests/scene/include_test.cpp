@@ -5,9 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/scene/scene_reader.h"
-#include "core/scene/scene_writer.h"
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {

@@ -1,7 +1,5 @@
 // Meshes as fluid: which cells are filled, against a count of every cell of the bounding box, and what that
 // costs where the box is nearly empty.
-#include "core/scene/mesh_fill.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/scene/mesh_source.h"
-#include "core/scene/scene_reader.h"
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
+#include "core/scene/sources.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa::testing {

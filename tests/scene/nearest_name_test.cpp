@@ -1,8 +1,8 @@
-#include "core/scene/nearest_name.h"
-
 #include <array>
 
 #include <gtest/gtest.h>
+
+#include "core/base/messages.h"
 
 namespace migiwa {
 namespace {

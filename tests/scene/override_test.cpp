@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/scene/scene_reader.h"
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

@@ -1,11 +1,10 @@
-#include "core/scene/particle_limit.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

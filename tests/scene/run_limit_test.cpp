@@ -1,12 +1,10 @@
 // Ends that a run cannot reach are refused, with an end or a step that would do, which does.
-#include "core/scene/run_limit.h"
-
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "core/scene/particle_limit.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

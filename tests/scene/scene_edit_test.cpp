@@ -1,13 +1,10 @@
 // Lines of faults in a text, and changes written back into it.
-#include "core/scene/scene_edit.h"
-
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_reader.h"
-#include "core/scene/scene_writer.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {

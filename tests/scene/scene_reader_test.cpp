@@ -1,10 +1,9 @@
 // Scenes in, values out.
-#include "core/scene/scene_reader.h"
-
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/boundary/gamma_method.h"
+#include "core/base/messages.h"
+#include "core/gamma/gamma_method.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

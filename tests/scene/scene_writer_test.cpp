@@ -1,14 +1,11 @@
 // Writing a scene and reading it back gives the same scene.
-#include "core/scene/scene_writer.h"
-
 #include <filesystem>
 #include <type_traits>
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_files.h"
-#include "core/scene/scene_identity.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/json.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_schema.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa {
 namespace {

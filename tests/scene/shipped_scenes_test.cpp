@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
-#include "core/scene/particle_limit.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/fill.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa {
 namespace {

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/boundary/slim_surface.h"
-#include "core/scene/mesh_source.h"
-#include "core/scene/scene_reader.h"
-#include "core/scene/scene_writer.h"
-#include "core/slim/slim_file.h"
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
+#include "core/scene/sources.h"
+#include "core/slim/file.h"
+#include "core/walls/slim_wall.h"
 
 namespace migiwa {
 namespace {

@@ -1,12 +1,11 @@
 // The Chebyshev weights against their closed form, and what they are for: fewer iterations, and the same
 // rest.
-#include "core/solver/acceleration.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/simulation/simulation.h"
+#include "core/solver/state.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/handling.h"
-#include "core/boundary/plane.h"
-#include "core/simulation/run.h"
+#include "core/gamma/gamma_method.h"
+#include "core/simulation/measures.h"
+#include "core/walls/shapes.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -1,15 +1,13 @@
 // Walls are not asked where a particle is known to be clear of them. That must change nothing: a run that
 // forgets every clearance between frames, as a save does, goes the same way; and no wall's distance may
 // change faster than is reckoned with.
-#include "core/solver/clearance.h"
-
 #include <gtest/gtest.h>
 
-#include "core/boundary/gridded_surface.h"
-#include "core/boundary/polynomial.h"
-#include "core/boundary/sphere.h"
 #include "core/simulation/simulation.h"
-#include "core/simulation/state_image.h"
+#include "core/simulation/state.h"
+#include "core/solver/state.h"
+#include "core/walls/gridded.h"
+#include "core/walls/shapes.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

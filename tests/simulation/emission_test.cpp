@@ -1,14 +1,13 @@
 // Emitters: what they give against their rate, and how it lies.
-#include "core/simulation/emission.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
+#include "core/simulation/fill.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/boundary.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
+#include "core/walls/boundary.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {

@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/base/state_hash.h"
-#include "core/io/output_file.h"
-#include "core/scene/scene_reader.h"
+#include "core/base/files.h"
+#include "core/base/hash.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "tests/support/instruction_sets.h"
 

@@ -8,13 +8,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "core/base/available_memory.h"
-#include "core/base/error.h"
-#include "core/boundary/gridded_surface.h"
-#include "core/boundary/handling.h"
-#include "core/boundary/sphere.h"
-#include "core/scene/mesh_source.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/gamma/gamma_method.h"
+#include "core/scene/sources.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/gridded.h"
+#include "core/walls/shapes.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/test_scenes.h"
 

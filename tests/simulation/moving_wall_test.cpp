@@ -5,9 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/box.h"
-#include "core/boundary/plane.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/shapes.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

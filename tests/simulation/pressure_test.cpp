@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/simulation/simulation.h"
-#include "core/study/pressure_profile.h"
+#include "core/study/study.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -1,7 +1,7 @@
 // Water at rest, with the correction and without: the paper's claim in numbers.
 #include <gtest/gtest.h>
 
-#include "core/simulation/run.h"
+#include "core/simulation/measures.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/boundary/sphere.h"
+#include "core/base/messages.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/shapes.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
 #include "core/simulation/simulation.h"
+#include "core/walls/boundary.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/boundary/box.h"
-#include "core/boundary/slim_surface.h"
 #include "core/simulation/simulation.h"
-#include "core/solver/thin_walls.h"
+#include "core/solver/step.h"
+#include "core/walls/shapes.h"
+#include "core/walls/slim_wall.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
@@ -95,11 +95,11 @@ TEST(ThinWall, AMoveThatIsHeldBackGoesOnAlongTheWall) {
   ASSERT_EQ(walls.size(), 1U);
   EXPECT_TRUE(thinWalls(boundary, 0.02F).empty()) << "the plate is thicker than that";
   const Vec3f from(0.37F, 0.2F, 0.1F), to(0.5F, 0.3F, 0.15F);
-  const Vec3f held = heldBack(walls, from, false, to, 0.025F);
+  const Vec3f held = clipMove(walls, from, false, to, 0.025F);
   EXPECT_NEAR(held.x(), 0.375F, 1e-6F);
   EXPECT_FLOAT_EQ(held.y(), to.y());
   EXPECT_FLOAT_EQ(held.z(), to.z());
-  EXPECT_EQ(heldBack(walls, from, false, Vec3f(0.3F, 0.2F, 0.1F), 0.025F), Vec3f(0.3F, 0.2F, 0.1F));
+  EXPECT_EQ(clipMove(walls, from, false, Vec3f(0.3F, 0.2F, 0.1F), 0.025F), Vec3f(0.3F, 0.2F, 0.1F));
 }
 
 TEST(ThinWall, FastWaterStaysInAThinBowlOfAnyShape) {

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/slim/bowl.h"
-#include "core/slim/slim_fit.h"
-#include "core/slim/slim_model.h"
+#include "core/slim/fit.h"
+#include "core/slim/model.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa::testing {

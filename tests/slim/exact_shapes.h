@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/slim/oriented_points.h"
+#include "core/slim/points.h"
 
 namespace migiwa::testing {
 

@@ -1,14 +1,13 @@
 // Estimated normals against the exact ones of shapes, thin walls included, and errors where it cannot be
 // known.
-#include "core/slim/normal_estimation.h"
-
 #include <functional>
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/slim/bowl.h"
-#include "core/slim/random_sequence.h"
+#include "core/base/messages.h"
+#include "core/slim/fit.h"
+#include "core/slim/points.h"
+#include "core/slim/shape_import.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

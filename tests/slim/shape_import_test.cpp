@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/slim/slim_fitting.h"
+#include "core/base/messages.h"
+#include "core/slim/fit.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

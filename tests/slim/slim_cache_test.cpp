@@ -1,7 +1,5 @@
 // Fits kept on disk: found again when nothing has changed, made anew when anything has, and never trusted
 // when they are not whole.
-#include "core/boundary/slim_cache.h"
-
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -9,7 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "core/base/disk_cache.h"
+#include "core/base/files.h"
+#include "core/walls/slim_wall.h"
 
 namespace migiwa {
 namespace {
@@ -92,7 +91,7 @@ TEST_F(SlimCache, IsNotReadWhileAllIsMadeAnew) {
   EXPECT_EQ(prepareSlim(source_)->model->nodes().size(), 1U);
   std::size_t fitted = 0;
   {
-    const MadeAnew anew;
+    const CacheBypass anew;
     fitted = prepareSlim(source_)->model->nodes().size();
     EXPECT_GT(fitted, 50U);
   }

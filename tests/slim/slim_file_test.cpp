@@ -1,9 +1,8 @@
 // Files of SLIM surfaces: what is written is read, and what is not one is refused with its place.
-#include "core/slim/slim_file.h"
-
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/messages.h"
+#include "core/slim/file.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

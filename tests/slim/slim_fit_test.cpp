@@ -1,11 +1,9 @@
 // The fit against shapes known exactly: its error falls with the size of the balls as its degree says, keeps
 // the tolerance, covers every point, and does not depend on threads.
-#include "core/slim/slim_fit.h"
-
 #include <gtest/gtest.h>
 
-#include "core/slim/bowl.h"
-#include "core/slim/slim_model.h"
+#include "core/slim/fit.h"
+#include "core/slim/model.h"
 #include "tests/slim/error_orders.h"
 #include "tests/slim/exact_shapes.h"
 

@@ -1,15 +1,10 @@
 // Hierarchies of balls: whatever tolerance cuts one, the cut covers every point, keeps the tolerance, and
 // takes about as many balls as a fit of its own.
-#include "core/slim/slim_hierarchy.h"
-
 #include <gtest/gtest.h>
 
-#include "core/slim/bowl.h"
-#include "core/slim/enclosing_ball.h"
-#include "core/slim/random_sequence.h"
-#include "core/slim/slim_fit.h"
-#include "core/slim/slim_fitting.h"
-#include "core/slim/slim_model.h"
+#include "core/slim/fit.h"
+#include "core/slim/model.h"
+#include "core/slim/points.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

@@ -1,12 +1,10 @@
 // Meshes of SLIM surfaces against the closed forms of what the surfaces were fitted to.
-#include "core/slim/slim_mesh.h"
-
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include "core/slim/bowl.h"
-#include "core/slim/slim_fit.h"
+#include "core/slim/fit.h"
+#include "core/slim/mesh.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

@@ -1,14 +1,12 @@
 // Distances, normals and gradients of SLIM surfaces against exact shapes, near and far.
-#include "core/slim/slim_model.h"
-
 #include <algorithm>
 #include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "core/slim/bowl.h"
-#include "core/slim/slim_fit.h"
+#include "core/slim/fit.h"
+#include "core/slim/model.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

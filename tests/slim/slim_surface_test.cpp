@@ -1,13 +1,12 @@
 // SLIM surfaces as walls: rays, projection and pieces against exact shapes, and gamma through the methods
 // that scenes use against exact quadrature.
-#include "core/boundary/slim_surface.h"
-
 #include <gtest/gtest.h>
 
-#include "core/boundary/boundary.h"
-#include "core/boundary/gamma_method.h"
-#include "core/slim/slim_rays.h"
-#include "tests/boundary/gamma_reference.h"
+#include "core/gamma/gamma_method.h"
+#include "core/slim/model.h"
+#include "core/walls/boundary.h"
+#include "core/walls/slim_wall.h"
+#include "tests/gamma/gamma_reference.h"
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {

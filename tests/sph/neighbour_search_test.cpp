@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sph/neighbour_lists.h"
+#include "core/sph/neighbours.h"
 
 namespace migiwa {
 namespace {

@@ -1,10 +1,10 @@
 // The lattice sums that the rest density and Eq. 11's epsilon come from.
-#include "core/sph/resting_lattice.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "core/sph/kernels.h"
 
 namespace migiwa {
 namespace {

@@ -16,9 +16,7 @@ struct SourceFile {
 /// Every function below returns one readable line for each violation.
 using Violations = std::vector<std::string>;
 
-/// Lower parts never include higher ones, and no two parts include each other: base, then sph and boundary,
-/// then solver and effects, then scene, then simulation, then everything that uses a simulation, then the
-/// program.
+/// Lower rooms never include higher ones, and no two rooms include each other.
 Violations checkLayers(const std::vector<SourceFile>& files);
 
 /// Narrower borders: the renderer never sees the solver, a library only shows where it is wrapped.
@@ -29,6 +27,9 @@ Violations checkIncludeStyle(const std::vector<SourceFile>& files);
 
 /// Nothing in the physics calls what differs in its last digit between machines.
 Violations checkPortability(const std::vector<SourceFile>& files);
+
+/// A file is a chapter: the median of a room's files is long enough, and a header has two readers at least.
+Violations checkChapters(const std::vector<SourceFile>& files);
 
 /// Headers say what they are for and are guarded; no file is too long or keeps notes about unfinished work.
 Violations checkHabits(const std::vector<SourceFile>& files);

@@ -30,14 +30,14 @@ TEST(Layers, LowerMayNotIncludeHigher) {
 }
 
 TEST(Layers, ASubfolderBelongsToItsPart) {
-  expect(checkLayers({file("core/boundary/gamma/a.cpp", "#include \"core/scene/scene.h\"\n")}),
-         {"core/boundary lies below core/scene"});
-  expectNone(checkLayers({file("core/boundary/gamma/a.cpp", "#include \"core/boundary/surface.h\"\n")}));
+  expect(checkLayers({file("core/walls/inner/a.cpp", "#include \"core/scene/scene.h\"\n")}),
+         {"core/walls lies below core/scene"});
+  expectNone(checkLayers({file("core/walls/inner/a.cpp", "#include \"core/walls/surface.h\"\n")}));
 }
 
 TEST(Layers, PartsOfTheSameRankMayNotIncludeEachOther) {
-  const SourceFile oneWay = file("core/boundary/a.cpp", "#include \"core/sph/kernels.h\"\n");
-  const SourceFile back = file("core/sph/b.cpp", "#include \"core/boundary/a.h\"\n");
+  const SourceFile oneWay = file("core/slim/a.cpp", "#include \"core/sph/kernels.h\"\n");
+  const SourceFile back = file("core/sph/b.cpp", "#include \"core/slim/a.h\"\n");
   expectNone(checkLayers({oneWay}));
   expectNone(checkLayers({back}));
   expect(checkLayers({oneWay, back}), {"in a circle"});
@@ -46,6 +46,27 @@ TEST(Layers, PartsOfTheSameRankMayNotIncludeEachOther) {
 TEST(Layers, EveryFileHasItsPart) {
   expect(checkLayers({file("core/misc/a.cpp", "")}), {"core/misc/a.cpp"});
   expect(checkLayers({file("core/spherical/a.cpp", "")}), {"no known part"});
+}
+
+TEST(Chapters, AHeaderHasTwoReaders) {
+  const SourceFile header = file("core/sph/a.h", "// A.\n#pragma once\n");
+  const SourceFile own = file("core/sph/a.cpp", "#include \"core/sph/a.h\"\n");
+  const SourceFile one = file("core/solver/b.cpp", "#include \"core/sph/a.h\"\n");
+  const SourceFile two = file("tests/sph/c.cpp", "#include \"core/sph/a.h\"\n");
+  expectNone(checkChapters({header, own, one, two}));
+  expect(checkChapters({header, own, one}), {"core/sph/a.h: a header with fewer than two readers"});
+}
+
+TEST(Chapters, TheMedianOfARoomIsLongEnough) {
+  const std::string line = "int a;\n";
+  std::string longText;
+  for (int k = 0; k < 120; ++k) longText += line;
+  const auto room = [&](const std::string& second) {
+    return std::vector<SourceFile>{file("core/sph/a.cpp", longText), file("core/sph/b.cpp", second),
+                                   file("core/sph/c.cpp", line), file("core/sph/d.cpp", longText)};
+  };
+  expectNone(checkChapters(room(longText)));
+  expect(checkChapters(room(line)), {"core/sph: half of its files have 60 lines or fewer"});
 }
 
 TEST(Borders, TheRendererNeverSeesTheSolver) {

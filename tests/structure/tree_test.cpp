@@ -61,6 +61,9 @@ TEST(Tree, NamesItsIncludesFromTheRoot) {
 TEST(Tree, ComputesTheSameOnEveryMachine) {
   expectNone(checkPortability(tree()));
 }
+TEST(Tree, IsWrittenInChapters) {
+  expectNone(checkChapters(tree()));
+}
 TEST(Tree, KeepsItsHabits) {
   expectNone(checkHabits(tree()));
 }

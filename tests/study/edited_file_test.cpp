@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/study/study_run.h"
+#include "core/base/messages.h"
+#include "core/study/study.h"
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {

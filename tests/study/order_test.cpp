@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/study/convergence.h"
+#include "core/study/study.h"
 
 namespace migiwa {
 namespace {

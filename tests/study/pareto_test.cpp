@@ -1,10 +1,10 @@
 // The front against its definition, applied to every pair.
-#include "core/study/pareto.h"
-
 #include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
+
+#include "core/study/study.h"
 
 namespace migiwa {
 namespace {

@@ -1,7 +1,7 @@
 // The grid of a study and the fingerprints of its runs.
-#include "core/study/plan.h"
-
 #include <gtest/gtest.h>
+
+#include "core/study/study.h"
 
 namespace migiwa {
 namespace {

@@ -1,10 +1,9 @@
 // Profiles of pressures made by hand.
-#include "core/study/pressure_profile.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/study/study.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

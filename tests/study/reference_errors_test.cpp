@@ -1,11 +1,10 @@
 // Errors of states made by hand: gamma against a sum over a fine lattice that shares nothing with the
 // program.
-#include "core/study/reference_errors.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "core/study/study.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/study/table.h"
+#include "core/study/study.h"
 #include "tests/support/program.h"
 
 namespace migiwa::testing {

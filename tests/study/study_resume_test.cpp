@@ -42,11 +42,11 @@ class StudyOfForty : public StudyProgramTest {
 
   static std::set<std::string> distinct(const Words& values) { return {values.begin(), values.end()}; }
 
-  void carryOut(const std::string& out) const { expectDone(run(study(out))); }
+  void applyRequest(const std::string& out) const { expectDone(run(study(out))); }
 };
 
 TEST_F(StudyOfForty, StoppedTwiceAndMergedFromFourPartsHasTheSameTable) {
-  carryOut("whole");
+  applyRequest("whole");
   const std::string whole = table("whole");
   ASSERT_EQ(std::count(whole.begin(), whole.end(), '\n'), kRuns + 1);
   // No run can take the place of another unnoticed.
@@ -59,7 +59,7 @@ TEST_F(StudyOfForty, StoppedTwiceAndMergedFromFourPartsHasTheSameTable) {
   stopWhenThere(study("stopped"), "stopped/runs/7.json", SIGINT);
   const std::string kept = readAll(folder_ / "stopped" / "runs" / "7.json");
   stopWhenThere(study("stopped"), "stopped/runs/23.json", SIGKILL);
-  carryOut("stopped");
+  applyRequest("stopped");
   EXPECT_EQ(table("stopped"), whole);
   EXPECT_EQ(readAll(folder_ / "stopped" / "runs" / "7.json"), kept) << "what was done is not done again";
 

@@ -1,7 +1,7 @@
 // study.csv of runs made by hand.
-#include "core/study/table.h"
-
 #include <gtest/gtest.h>
+
+#include "core/study/study.h"
 
 namespace migiwa {
 namespace {

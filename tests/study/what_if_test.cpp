@@ -1,9 +1,8 @@
 // A copy that goes on from a moment of a run does what the run itself does.
-#include "core/study/what_if.h"
-
 #include <gtest/gtest.h>
 
-#include "core/simulation/state_visitor.h"
+#include "core/simulation/state.h"
+#include "core/study/study.h"
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "core/boundary/box.h"
-#include "core/solver/pbf_solver.h"
-#include "core/solver/stages.h"
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
+#include "core/solver/step.h"
+#include "core/walls/shapes.h"
 
 namespace migiwa::testing {
 

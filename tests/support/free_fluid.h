@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "core/solver/pbf_solver.h"
+#include "core/solver/step.h"
 #include "tests/support/test_effects.h"
 
 namespace migiwa::testing {

@@ -1,7 +1,7 @@
 // Closed meshes put together in code.
 #pragma once
 
-#include "core/slim/triangle_mesh.h"
+#include "core/slim/points.h"
 
 namespace migiwa::testing {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/solver/step_state.h"
+#include "core/solver/state.h"
 #include "core/sph/kernels.h"
 
 namespace migiwa::testing {
@@ -50,7 +50,7 @@ inline void scalarLambda(const StepState& state, const IndexLists& lists, Scalar
       }
       const float gamma = state.gamma[i], density = mass * covered / gamma;
       gradient *= mass;
-      if (state.wallSlot[i] != StepState::kNoWall)
+      if (state.wallSlot[i] != FluidState::kNoWall)
         gradient -= density * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
       const float squared = (gradient.squaredNorm() + mass * mass * squaredSlopes) / (gamma * gamma);
       out.density[i] = density;
@@ -75,7 +75,7 @@ inline void scalarMove(const StepState& state, const IndexLists& lists, ScalarRe
         move += (own + out.lambda[j] / state.gamma[j]) * Spiky::derivative(q) / q * offset;
       }
       move *= mass;
-      if (state.wallSlot[i] != StepState::kNoWall)
+      if (state.wallSlot[i] != FluidState::kNoWall)
         move -= own * out.density[i] * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
       out.moved[i] = at + h * move;
     }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/scene/scene_reader.h"
+#include "core/scene/scene_file.h"
 
 namespace migiwa::testing {
 

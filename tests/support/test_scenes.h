@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "core/boundary/box.h"
-#include "core/scene/box_source.h"
 #include "core/scene/scene.h"
+#include "core/scene/sources.h"
+#include "core/walls/shapes.h"
 #include "tests/support/test_effects.h"
 
 namespace migiwa::testing {

@@ -1,0 +1,416 @@
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "app/commands/command.h"
+#include "app/commands/plots.h"
+#include "app/render/image.h"
+#include "app/viewer/viewer.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+namespace {
+
+constexpr double kLatestTime = 1e6;  // (s), as long as a scene's duration can be
+constexpr int kSmallestSide = 64, kLargestSide = 8192;
+
+/// Parts at commas that stand outside brackets and quotes.
+std::vector<std::string> partsAtCommas(std::string_view text) {
+  std::vector<std::string> parts{""};
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"' && (i == 0 || text[i - 1] != '\\')) quoted = !quoted;
+    if (!quoted && (c == '[' || c == '{')) ++depth;
+    if (!quoted && (c == ']' || c == '}')) --depth;
+    if (c == ',' && depth == 0 && !quoted) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::vector<double> parseTimes(const std::string& text, std::string_view option) {
+  const auto parse = [&](const std::string& part) {
+    const std::optional<double> time = number<double>(part);
+    if (time && *time >= 0 && *time <= kLatestTime) return *time;
+    throw InputError(std::string(option),
+                     "expected numbers in [0, 1e+06] (unit: s) with commas between them, found \"" + part +
+                         "\" in \"" + text + "\"");
+  };
+  std::vector<double> times;
+  for (const std::string& part : partsAtCommas(text)) times.push_back(parse(part));
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+std::array<int, 2> parseSize(const std::string& text, std::string_view option) {
+  const std::size_t cross = std::min(text.find('x'), text.size());
+  const int width = number<int>(std::string_view(text).substr(0, cross)).value_or(0);
+  const int height = number<int>(std::string_view(text).substr(std::min(cross + 1, text.size()))).value_or(0);
+  for (const int side : {width, height}) {
+    if (side < kSmallestSide || side > kLargestSide) {
+      throw InputError(std::string(option),
+                       "expected WIDTHxHEIGHT in pixels, each in [64, 8192], found \"" + text + "\"");
+    }
+  }
+  return {width, height};
+}
+
+std::vector<Override> parseVariants(const std::string& text, std::string_view option) {
+  try {
+    const Override all = Override::parse(text);
+    std::vector<Override> variants;
+    for (const std::string& value : partsAtCommas(all.value)) variants.push_back({all.pointer, value});
+    return variants;
+  } catch (const InputError& error) {
+    throw InputError(std::string(option), error.faults().front().message);
+  }
+}
+
+namespace {
+
+std::string duration(double seconds) {
+  char text[32];
+  if (seconds < 60) {
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  } else if (seconds < 3600) {
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  }
+  return text;
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(double from, double until, bool quiet)
+    : from_(from), until_(until), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::update(double time) {
+  const Clock::time_point now = Clock::now();
+  if (!shown_ || now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  constexpr int kCells = 30;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double part = until_ > from_ ? std::clamp((time - from_) / (until_ - from_), 0.0, 1.0) : 1;
+  const int filled = static_cast<int>(part * kCells);
+  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                          std::string(static_cast<std::size_t>(kCells - filled), '.');
+  const std::string left = part > 0 ? duration(elapsed * (1 - part) / part) + " left" : "";
+  std::fprintf(stderr, "\r[%s] %.2f of %.2f s, %.2f x real time, %s\033[K", bar.c_str(), time, until_,
+               (time - from_) / elapsed, left.c_str());
+  std::fflush(stderr);
+}
+
+namespace {
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
+  }
+  /// From where it stands to its end.
+  std::string rest() const {
+    std::string text;
+    std::array<char, 1 << 16> piece;
+    while (true) {
+      const ssize_t size = ::read(number_, piece.data(), piece.size());
+      if (size > 0) {
+        text.append(piece.data(), static_cast<std::size_t>(size));
+      } else if (size == 0 || errno != EINTR) {
+        return text;
+      }
+    }
+  }
+
+ private:
+  int number_;
+};
+
+[[noreturn]] void throwRefused(const std::string& what) {
+  throw MissingError(what + ": " + std::strerror(errno));
+}
+
+/// A file in memory: no folder for temporary files that may be full, and gone when it is closed.
+Descriptor memoryFile(const std::string& content) {
+  Descriptor file(memfd_create("gnuplot", MFD_CLOEXEC));
+  if (file.number() < 0) throwRefused("no file in memory for gnuplot");
+  for (std::size_t done = 0; done < content.size();) {
+    const ssize_t size = ::write(file.number(), content.data() + done, content.size() - done);
+    if (size < 0 && errno != EINTR) throwRefused("no room for a script of gnuplot");
+    done += static_cast<std::size_t>(std::max<ssize_t>(size, 0));
+  }
+  ::lseek(file.number(), 0, SEEK_SET);
+  return file;
+}
+
+struct Ended {
+  int status;  ///< as waitpid() says it
+  std::string printed, complaints;
+};
+
+/// Runs gnuplot on a script. The picture comes back through a pipe, since of a file that it cannot finish
+/// gnuplot says nothing. Throws MissingError when it cannot be started.
+Ended runGnuplot(const std::string& png, const std::string& text) {
+  const Descriptor script = memoryFile(text), complaints = memoryFile("");
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throwRefused("no pipe to gnuplot");
+  Descriptor readEnd(ends[0]), writeEnd(ends[1]);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, script.number(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, writeEnd.number(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, complaints.number(), STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // What this program ignores its children need not.
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&defaults, signal);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  std::string name = "gnuplot";
+  std::array<char*, 2> words{name.data(), nullptr};
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, name.c_str(), &actions, &attributes, words.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure == ENOENT)
+    throw MissingError(png + " needs gnuplot; install gnuplot-nox (apt-get install gnuplot-nox)");
+  if (failure != 0)
+    throw MissingError(png + " needs gnuplot, which cannot be started: " + std::strerror(failure));
+
+  writeEnd.close();
+  Ended ended{0, readEnd.rest(), {}};
+  while (waitpid(child, &ended.status, 0) < 0 && errno == EINTR) continue;
+  ::lseek(complaints.number(), 0, SEEK_SET);
+  ended.complaints = complaints.rest();
+  return ended;
+}
+
+/// What a program said last, on one line.
+std::string lastWords(const std::string& complaints) {
+  constexpr std::size_t kMost = 300;
+  std::string text;
+  for (const char c : complaints) {
+    const bool space = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!space) text += c;
+    if (space && !text.empty() && text.back() != ' ') text += ' ';
+  }
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  if (text.size() > kMost) text = "..." + text.substr(text.size() - kMost);
+  return text.empty() ? "it said nothing" : "it said: " + text;
+}
+
+}  // namespace
+
+void drawWithGnuplot(const std::filesystem::path& png, const std::string& terminal,
+                     const std::string& script) {
+  const std::string file = png.string();
+  const Ended ended = runGnuplot(file, "set terminal " + terminal + "\n" + script);
+  if (WIFSIGNALED(ended.status)) {
+    const int signal = WTERMSIG(ended.status);
+    throw MissingError(file + " was not drawn: gnuplot was killed by signal " + std::to_string(signal) +
+                       " (" + strsignal(signal) + "), as the system does for want of memory; " +
+                       lastWords(ended.complaints));
+  }
+  if (WEXITSTATUS(ended.status) != 0 || ended.printed.empty())
+    throw MissingError(file + " was not drawn: gnuplot failed with exit code " +
+                       std::to_string(WEXITSTATUS(ended.status)) +
+                       (ended.printed.empty() ? " and no picture" : "") + "; " + lastWords(ended.complaints) +
+                       "; the disk of its temporary files may be full");
+  writeTextFile(png, ended.printed);
+}
+
+// `migiwa schema`: the scene format, for editors and for people.
+
+Command schemaCommand() {
+  return {"schema", "Prints the scene format as JSON Schema.", [] {
+            const auto markdown = std::make_shared<bool>(false);
+            return Declaration{{{.name = "--markdown",
+                                 .target = markdown.get(),
+                                 .help = "Prints a reference of all keys for people instead."}},
+                               [markdown](const CommonOptions&) {
+                                 std::cout << (*markdown ? sceneReference() : sceneSchema());
+                                 return kDone;
+                               }};
+          }};
+}
+
+// `migiwa check SCENE...`: reads and validates only.
+
+namespace {
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  bool print = false;
+};
+
+int check(const CheckOptions& options, const CommonOptions& common) {
+  std::vector<Fault> faults;
+  // With --print the scenes have the standard output to themselves.
+  std::ostream& verdicts = options.print ? std::cerr : std::cout;
+  for (const std::string& file : options.files) {
+    try {
+      const Scene scene = readScene(file, common.overrides);
+      verdicts << file << ": ok (" << std::llround(particleCount(scene)) << " particles at most)\n";
+      for (const std::string& warning : scene.warnings) std::cerr << file << ": warning: " << warning << '\n';
+      if (options.print) std::cout << writeScene(scene);
+    } catch (const InputError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  return kDone;
+}
+
+}  // namespace
+
+Command checkCommand() {
+  return {"check", "Reads scenes and lists everything that is wrong with them.", [] {
+            const auto options = std::make_shared<CheckOptions>();
+            return Declaration{{{.name = "scenes",
+                                 .target = &options->files,
+                                 .value = "SCENE",
+                                 .help = "Scene files.",
+                                 .required = true},
+                                {.name = "--print",
+                                 .target = &options->print,
+                                 .help = "Prints each scene with every key and its value in force."}},
+                               [options](const CommonOptions& common) { return check(*options, common); }};
+          }};
+}
+
+// `migiwa view [SCENE]`: the window.
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewOptions {
+  std::string scene;
+  bool paused = false;
+  std::optional<long> frames;
+};
+
+/// The scene to begin with: in the current folder's scenes/, or in the repository that the program was built
+/// in.
+fs::path defaultScene() {
+  const fs::path name = fs::path("scenes") / "dam_break.json";
+  std::error_code error;
+  if (fs::exists(name, error)) return name;
+  for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    if (fs::exists(folder / name, error)) return folder / name;
+  }
+  throw InputError("SCENE", "expected a scene file, found none given and no " + name.string() +
+                                " here or in a folder above the program");
+}
+
+/// migiwa_0001.png and so on: the first that is not there yet.
+fs::path freePictureName() {
+  for (int number = 1;; ++number) {
+    std::string digits = std::to_string(number);
+    digits.insert(0, digits.size() < 4 ? 4 - digits.size() : 0, '0');
+    const fs::path file = "migiwa_" + digits + ".png";
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return file;
+  }
+}
+
+void savePicture(const Image& image) {
+  try {
+    const fs::path file = freePictureName();
+    writeTextFile(file, encodePng(image));
+    std::cout << file.string() << std::endl;
+  } catch (const std::exception& error) {
+    // A full disk is no reason to close the window.
+    std::cerr << "migiwa: " << error.what() << '\n';
+  }
+}
+
+int view(const ViewOptions& options, const CommonOptions& common) {
+  const Scene scene =
+      readScene(options.scene.empty() ? defaultScene() : fs::path(options.scene), common.overrides);
+  requireSteppable(scene.boundary, scene.file);
+  runWindow(scene, {common.threads, common.overrides, !options.paused, options.frames, savePicture});
+  return kDone;
+}
+
+}  // namespace
+
+Command viewCommand() {
+  return {
+      "view", "Opens a window on a scene.", [] {
+        const auto options = std::make_shared<ViewOptions>();
+        return Declaration{
+            {{.name = "scene",
+              .target = &options->scene,
+              .value = "SCENE",
+              .help = "Scene file; left out: scenes/dam_break.json."},
+             {.name = "--paused", .target = &options->paused, .help = "Does not start by itself."},
+             {.name = "--frames",
+              .target = &options->frames,
+              .value = "N",
+              .help = "Closes after so many drawn frames.",
+              .range = {{1, 1'000'000'000}}}},
+            [options](const CommonOptions& common) { return view(*options, common); },
+            "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
+            "Keys: space plays and pauses, right arrow steps, R resets, C corrects or not, H hides the "
+            "panels,\n"
+            "P saves a picture here as migiwa_0001.png and so on.\n"
+            "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
+            "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
+      }};
+}
+
+}  // namespace migiwa

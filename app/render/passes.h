@@ -1,0 +1,152 @@
+// What is drawn of a scene, a pass each: particles, lines, nodes, surfaces and the ground.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "app/render/gl.h"
+#include "app/render/image.h"
+#include "core/base/math.h"
+#include "core/simulation/frame_view.h"
+#include "core/walls/surface.h"
+
+namespace migiwa {
+
+// Particles as lit spheres: one camera-facing quad each, the sphere found by ray in the fragment shader.
+
+class SpherePass {
+ public:
+  explicit SpherePass(const ColorMap& colors);
+
+  /// `spheres`: centre (m) and, in w, the colour value in [0, 1].
+  void draw(std::span<const Float4> spheres, float radius);
+
+ private:
+  ShaderProgram program_;
+  GlTexture colors_;
+  GlBuffer spheres_;
+  GlVertexArray layout_;
+  std::size_t capacity_ = 0;
+};
+
+// Lines of walls, anti-aliased, a fixed number of pixels wide.
+
+class LinePass {
+ public:
+  LinePass();
+  /// From now on draws these.
+  void set(std::span<const LineSegment> lines);
+  /// Where an opaque line is made of short segments, these do not show.
+  void draw(float widthPixels, float alpha) const;
+
+ private:
+  ShaderProgram program_;
+  GlBuffer lines_;
+  GlVertexArray layout_;
+  GLsizei count_ = 0;
+};
+
+// The nodes of SLIM walls as discs, coloured by the radius of their balls and cut by the clip plane. On the
+// near side of a vessel only their rims are drawn.
+
+class NodePass {
+ public:
+  NodePass();
+  /// From now on draws these.
+  void set(std::span<const WallNode> nodes);
+
+  bool empty() const { return count_ == 0; }
+  /// What their colours mean.
+  static ColorFieldInfo legend() { return {"radius of the balls", "m"}; }
+  /// Radii (m) at the ends of the colour map: those of all but a few balls.
+  const std::array<double, 2>& range() const { return range_; }
+  void draw() const;
+
+ private:
+  ShaderProgram program_;
+  GlTexture colors_;
+  GlBuffer discs_;
+  GlVertexArray layout_;
+  GLsizei count_ = 0;
+  std::array<double, 2> range_{0, 1};
+};
+
+// Walls as shaded surfaces, cut by the clip plane: solids opaque, with the face of the cut in a colour of its
+// own; vessels opaque behind the fluid and glass before it.
+
+class SurfacePass {
+ public:
+  SurfacePass();
+  /// From now on draws these.
+  void set(std::span<const WallMesh> meshes);
+
+  void drawOpaque() const;
+  /// After all that may be seen through it.
+  void drawGlass() const;
+
+ private:
+  void drawVessels(GLenum culled) const;
+
+  ShaderProgram program_;
+  GlBuffer vertices_, indices_;
+  GlVertexArray layout_;
+  GLsizei solidIndices_ = 0, vesselIndices_ = 0;  ///< in this order in indices_
+};
+
+// The plane under the scene: where it lies and how far apart its grid lines are.
+
+struct Ground {
+  Vec3d center = Vec3d::Zero();  ///< of the scene's footprint, in the plane
+  Vec3d up = Vec3d::UnitY(), u = Vec3d::UnitX(), v = Vec3d::UnitZ();
+  double extent = 1;       ///< longest side of the scene (m)
+  double halfSide = 1;     ///< how far the plane reaches from its centre (m)
+  double gridSpacing = 1;  ///< (m)
+
+  double heightOf(const Vec3d& p) const { return (p - center).dot(up); }
+};
+
+/// `up` picks the axis nearest to it.
+Ground makeGround(const Bounds& scene, const Vec3d& up);
+
+// A soft shadow straight under particles and walls, computed from how much of the ground they cover and from
+// how high.
+
+class GroundShadow {
+ public:
+  static constexpr int kSize = 192;  ///< cells along each side
+
+  explicit GroundShadow(const Ground& ground) : ground_(ground) {}
+
+  /// Darkness in [0, 1], row by row along v. `patches`: pieces of walls, with the area that each covers (m^2)
+  /// in w.
+  std::span<const float> compute(std::span<const Float4> spheres, float radius,
+                                 std::span<const Float4> patches);
+  /// Half the side of the covered square around the ground's centre (m).
+  double halfSide() const { return 0.8 * ground_.extent; }
+
+ private:
+  void add(const Float4& place, double area);
+
+  Ground ground_;
+  std::vector<float> cells_, scratch_;
+};
+
+// What lies behind and under the scene, so that depth can be read: a gradient, a grid on the ground, a soft
+// shadow.
+
+class GroundPass {
+ public:
+  explicit GroundPass(const Ground& ground);
+  /// `spheres` and `patches` throw the shadow (GroundShadow); the ground is not drawn from below.
+  void draw(std::span<const Float4> spheres, float radius, std::span<const Float4> patches, const Vec3d& eye);
+
+ private:
+  Ground ground_;
+  GroundShadow shadow_;
+  ShaderProgram background_, plane_;
+  GlTexture shadowMap_;
+  GlVertexArray layout_;
+};
+
+}  // namespace migiwa

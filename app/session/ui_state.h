@@ -1,0 +1,124 @@
+// What lies between panels and the simulation: what they show, and what the user asks for. No window, no
+// OpenGL.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/simulation/frame_view.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+
+struct SceneEditor;
+struct WhatIfModel;
+class StageHistory;
+
+/// How the simulation is doing, apart from its frame.
+struct RunStatus {
+  bool playing = false;     ///< or would, if nothing held it
+  bool stopped = false;     ///< it stopped itself and cannot go on
+  std::string trouble;      ///< why
+  std::string heldFor{};    ///< why no frame begins though it may play; empty: nothing holds it
+  std::string refused{};    ///< one line on the last wish, if it could not be carried out
+  std::string stateNote{};  ///< one line on what became of the last wish to save or load the state
+  std::vector<std::string> stateFaults{};  ///< why it was not done; empty when it was
+  /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,
+  /// or after a reset.
+  std::vector<std::string> settingsFaults{};
+};
+
+/// How the scene is looked at.
+struct ViewState {
+  Camera camera;
+  ClipPlane clip;
+  ColorField color = ColorField::density;
+  bool walls = true;
+  bool nodes = false;  ///< of SLIM walls, in place of their surfaces
+  bool panels = true;
+};
+
+/// What the user asked for in one frame.
+struct UiCommands {
+  bool play = false, pause = false, step = false, reset = false;
+  bool settings = false;  ///< the settings were changed
+  bool savePicture = false;
+  bool saveState = false, loadState = false;
+};
+
+struct PanelModel {
+  const FrameInfo& frame;
+  const RunStatus& run;
+  bool timings;  ///< show wall times, which differ from run to run
+  const Scene& scene;
+  Bounds bounds;  ///< of the scene (m)
+  Settings& settings;
+  ViewState& view;
+  bool hasNodes;  ///< some wall has nodes to show
+  UiCommands& commands;
+  SceneEditor* editor;  ///< null: the scene's text is not offered
+  WhatIfModel* whatIf;  ///< null: not offered
+  const StageHistory& history;
+};
+
+// "What if": error and cost of the present state with other settings beside those of now, as points in one
+// chart.
+
+/// One setting that was tried.
+struct WhatIfPoint {
+  std::string label;  ///< such as "gamma: product, at most 10 iterations, tolerance 0.01"
+  double milliseconds = 0;
+  double iterations = 0;
+  std::optional<double> densityError, gammaError;  ///< against the reference, mean
+  std::string trouble;                             ///< why it could not go on
+};
+
+struct WhatIfModel {
+  Settings asked;  ///< what the form says
+  bool ask = false, clear = false;
+  bool busy = false;
+  bool follows = true;              ///< the form has not been touched: it says what the run has
+  std::string note;                 ///< what is going on
+  std::vector<WhatIfPoint> points;  ///< the first is what the run has now
+};
+
+// The scene's JSON in the window: a text to edit with its faults marked at their lines. What it asks for is
+// carried out by whoever owns the scene's file.
+
+struct SceneEditor {
+  struct Fault {
+    int line = 0;  ///< in the text, from 1; 0: elsewhere
+    std::string message;
+  };
+
+  std::string fileName;  ///< whose text it is
+  std::string text;
+  std::string known;          ///< what the file holds
+  std::vector<Fault> faults;  ///< of the last text that was tried
+  std::string note;           ///< one line on what became of the last wish
+  std::string saveName;
+  bool open = false;
+  bool apply = false, save = false, revert = false;  ///< what the user asks for; cleared by whoever does it
+
+  int goTo = 0;             ///< line to put the caret on in the next frames; 0: none
+  int caretLine = 1;        ///< where the caret is
+  bool wantsFocus = false;  ///< the text is to take the keyboard in the next frame
+
+  bool active = false;  ///< the text has the keyboard
+  int generation = 0;   ///< of the text: one that replaces another has nothing of that one's to undo
+
+  bool edited() const { return text != known; }
+  /// Another text, also while the caret is in it.
+  void replaceText(std::string with) {
+    text = std::move(with);
+    ++generation;
+    // The widget is a new one, and goes on where the old one was.
+    if (active) wantsFocus = true, goTo = caretLine;
+  }
+};
+
+}  // namespace migiwa

@@ -1,0 +1,308 @@
+// Picks the method at every point by the walls in reach there:
+//   planes at right angles, or one alone   product      closed forms
+//   planes at other angles, the rims of
+//   thin walls                             directions   where two planes meet: cheaper and closer than the
+//   copula curved walls                           baked, if the grid is soon made, else directions
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "core/gamma/gamma_method.h"
+#include "core/gamma/half_spaces.h"
+
+namespace migiwa {
+
+namespace {
+
+enum Pick : std::size_t { kProduct, kDirections };
+
+class AutoGamma final : public GammaMethod {
+ public:
+  AutoGamma(const GammaContext& context, bool withGrid)
+      : boundary_(context.boundary),
+        support_(context.supportRadius),
+        flat_(FlatPlanes::of(boundary_, support_)),
+        methods_{makeProductGamma(context), nullptr},
+        curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
+                             [](const auto& surface) { return surface->planar(); })) {
+    if (std::unique_ptr<GridGamma> grid = withGrid ? makeAboutCurves(context) : nullptr) {
+      grid_ = grid.get();
+      methods_[kDirections] = std::move(grid);
+    } else {
+      methods_[kDirections] = makeDirectionsGamma(fine(context));
+    }
+  }
+
+  void wallsMoved() override {
+    flat_ = FlatPlanes::of(boundary_, support_);
+    for (const auto& method : methods_) method->wallsMoved();
+  }
+
+  void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    if (curved_) return methods_[kDirections]->evaluate(points, out);
+    if (flat_) {
+      methods_[kProduct]->evaluate(points, out);
+      if (flat_->rightAngled()) return;
+    }
+    // Gathered by method, so that each has a batch.
+    std::array<std::vector<std::size_t>, 2> picked;
+    HalfSpaces walls;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3f p = points[i].xyz();
+      if (flat_) {
+        if (flat_->obliqueAt(p)) picked[kDirections].push_back(i);
+        continue;
+      }
+      out[i] = GammaSample{};
+      out[i].distance = boundary_.distance(p);
+      if (out[i].distance < support_) picked[pick(p, walls)].push_back(i);
+    }
+    std::vector<Float4> at;
+    std::vector<GammaSample> samples;
+    for (std::size_t method = 0; method < picked.size(); ++method) {
+      if (picked[method].empty()) continue;
+      at.clear();
+      samples.clear();
+      for (const std::size_t i : picked[method]) {
+        at.push_back(points[i]);
+        samples.push_back(out[i]);
+      }
+      if (method == kDirections && grid_ != nullptr) {
+        grid_->evaluateMeasured(at, samples);
+      } else {
+        methods_[method]->evaluate(at, samples);
+      }
+      for (std::size_t k = 0; k < at.size(); ++k) out[picked[method][k]] = samples[k];
+    }
+  }
+
+  GammaChoice choice() const override {
+    const auto& surfaces = boundary_.surfaces();
+    const bool planar =
+        std::all_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s->planar(); });
+    if (!planar) {
+      const std::string curved = grid_ != nullptr ? "baked" : "directions";
+      const std::string why =
+          grid_ != nullptr
+              ? "; curved walls: " + methods_[kDirections]->choice().reason
+              : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
+      if (curved_) return {curved, "all walls are curved" + why};
+      return {"product, " + curved, "by the walls in reach of each particle" + why};
+    }
+    if (std::any_of(surfaces.begin(), surfaces.end(),
+                    [this](const auto& s) { return s->thickness() < support_; }))
+      return {
+          "product, directions",
+          "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
+          "radius"};
+    const bool turn = std::any_of(boundary_.moving().begin(), boundary_.moving().end(),
+                                  [](const auto& wall) { return wall->motion().turns; });
+    if (turn) return {"product, directions", "by the walls in reach of each particle: planes, and some turn"};
+    if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
+    return {"product, directions", "by the walls in reach of each particle: planes at various angles"};
+  }
+
+ private:
+  /// A grid about the curved walls; null where there are none, or too large ones.
+  static std::unique_ptr<GridGamma> makeAboutCurves(GammaContext context) {
+    Bounds curves;
+    for (const auto& surface : context.boundary.surfaces())
+      if (!surface->planar()) curves.include(surface->bounds());
+    if (curves.empty()) return nullptr;
+    if (!context.region.empty()) {
+      curves.min = curves.min.cwiseMax(context.region.min);
+      curves.max = curves.max.cwiseMin(context.region.max);
+      if (curves.empty()) return nullptr;
+    }
+    context.region = curves;
+    return makeBakedGammaIfQuick(context);
+  }
+
+  /// Enough directions to stay within 0.004 wherever they are used.
+  static GammaContext fine(GammaContext context) {
+    context.directions = 1024;
+    return context;
+  }
+
+  static bool acrossEachOther(const Vec3f& a, const Vec3f& b) {
+    const float cosine = std::abs(a.dot(b));
+    return cosine < 1e-3F || cosine > 0.999F;
+  }
+
+  bool rightAngled() const {
+    std::vector<WallPiece> pieces;
+    // Every plane of every surface, wherever it is.
+    for (const auto& surface : boundary_.surfaces())
+      surface->pieces(Vec3f::Zero(), std::numeric_limits<float>::infinity(), pieces);
+    for (const WallPiece& a : pieces)
+      for (const WallPiece& b : pieces)
+        if (!acrossEachOther(a.normal, b.normal)) return false;
+    return true;
+  }
+
+  Pick pick(const Vec3f& p, HalfSpaces& walls) const {
+    if (grid_ != nullptr && grid_->covers(p)) return kDirections;
+    for (const auto& surface : boundary_.surfaces()) {
+      if (surface->planar()) continue;
+      Vec3f normal;
+      if (surface->distance(p, normal) < support_) return kDirections;
+    }
+    walls.collect(boundary_, p, support_);
+    if (walls.thinRim) return kDirections;
+    Pick most = ofPlanes(walls.tanks);
+    for (const std::vector<HalfSpace>& block : walls.blocks) most = std::max(most, ofPlanes(block));
+    return most;
+  }
+
+  static Pick ofPlanes(std::span<const HalfSpace> planes) {
+    for (std::size_t k = 0; k < planes.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l)
+        if (!acrossEachOther(planes[k].normal, planes[l].normal)) return kDirections;
+    return kProduct;
+  }
+
+  const Boundary& boundary_;
+  float support_;
+  std::optional<FlatPlanes> flat_;
+  std::unique_ptr<GammaMethod> methods_[2];
+  const GridGamma* grid_ = nullptr;  ///< the last, if it is one
+  bool curved_;                      ///< all walls are
+};
+
+}  // namespace
+
+std::unique_ptr<GammaMethod> makeAutoGammaWithoutGrid(const GammaContext& context) {
+  return std::make_unique<AutoGamma>(context, false);
+}
+
+std::unique_ptr<GammaMethod> makeAutoGamma(const GammaContext& context) {
+  const auto& surfaces = context.boundary.surfaces();
+  const bool curves =
+      std::any_of(surfaces.begin(), surfaces.end(), [](const auto& surface) { return !surface->planar(); });
+  // Closed forms follow planes wherever they go; a grid goes along with its wall.
+  if (context.boundary.moves() && curves) return makeMovingGamma(context, makeAutoGamma);
+  return std::make_unique<AutoGamma>(context, true);
+}
+
+// gamma where walls move: those that move as one keep their shape, so in their own frame gamma stays what it
+// is, and what is costly to look at needs a grid only once. Where walls of several frames are in reach of a
+// point their solids may overlap, and gamma is found anew from all of them.
+
+namespace {
+
+class MovingGamma final : public GammaMethod {
+ public:
+  MovingGamma(const GammaContext& context, std::unique_ptr<GammaMethod> (*make)(const GammaContext&))
+      : boundary_(context.boundary),
+        support_(context.supportRadius),
+        whole_(makeAutoGammaWithoutGrid(context)) {
+    std::vector<std::shared_ptr<const Surface>> still;
+    for (const auto& surface : boundary_.surfaces())
+      if (dynamic_cast<const MovingSurface*>(surface.get()) == nullptr) still.push_back(surface);
+    if (!still.empty()) addFrame(context, nullptr, std::move(still), make);
+    for (const auto& wall : boundary_.moving()) {
+      const auto known = std::find_if(frames_.begin(), frames_.end(), [&](const Frame& frame) {
+        return frame.mover != nullptr && frame.mover->group() == wall->group();
+      });
+      if (known != frames_.end()) continue;
+      std::vector<std::shared_ptr<const Surface>> rest;
+      for (const auto& other : boundary_.moving())
+        if (other->group() == wall->group()) rest.push_back(other->rest());
+      GammaContext alone = context;
+      alone.region = {};
+      addFrame(alone, wall.get(), std::move(rest), make);
+    }
+  }
+
+  GammaChoice choice() const override {
+    GammaChoice result{"", "walls that move, each in its own frame"};
+    for (const Frame& frame : frames_) {
+      const GammaChoice own = frame.method->choice();
+      if (result.name.find(own.name) == std::string::npos)
+        result.name += (result.name.empty() ? "" : ", ") + own.name;
+      result.reason += "; " + std::string(frame.mover == nullptr ? "still: " : "moving: ") + own.reason;
+    }
+    result.reason += "; where several are in reach: " + whole_->choice().name;
+    return result;
+  }
+
+  void wallsMoved() override { whole_->wallsMoved(); }
+
+  void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    // Gathered by frame, so that each method has a batch; the last is for points that see several.
+    std::vector<std::vector<std::size_t>> picked(frames_.size() + 1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3f p = points[i].xyz();
+      std::size_t frame = frames_.size();
+      int inReach = 0;
+      float nearest = std::numeric_limits<float>::infinity();
+      for (std::size_t k = 0; k < frames_.size(); ++k) {
+        const float distance = frames_[k].boundary->distance(frames_[k].toRest(p));
+        nearest = std::min(nearest, distance);
+        if (distance >= support_) continue;
+        frame = inReach++ == 0 ? k : frames_.size();
+      }
+      out[i] = GammaSample{};
+      out[i].distance = nearest;
+      if (inReach > 0) picked[frame].push_back(i);
+    }
+    std::vector<Float4> at;
+    std::vector<GammaSample> samples;
+    for (std::size_t k = 0; k < picked.size(); ++k) {
+      if (picked[k].empty()) continue;
+      const Frame* const frame = k < frames_.size() ? &frames_[k] : nullptr;
+      at.clear();
+      for (const std::size_t i : picked[k])
+        at.emplace_back(frame != nullptr ? frame->toRest(points[i].xyz()) : points[i].xyz());
+      samples.resize(at.size());
+      (frame != nullptr ? frame->method : whole_)->evaluate(at, samples);
+      const MovingSurface* const mover = frame != nullptr ? frame->mover : nullptr;
+      for (std::size_t n = 0; n < at.size(); ++n) {
+        GammaSample& sample = out[picked[k][n]];
+        const float distance = sample.distance;
+        sample = samples[n];
+        sample.distance = distance;
+        if (mover == nullptr) continue;
+        sample.gradient = mover->directionToWorld(sample.gradient);
+        sample.pairGradient = mover->directionToWorld(sample.pairGradient);
+      }
+    }
+  }
+
+ private:
+  /// Walls that move as one, as they are described.
+  struct Frame {
+    const MovingSurface* mover;  ///< one of them; null: they stand still
+    std::unique_ptr<const Boundary> boundary;
+    std::unique_ptr<GammaMethod> method;
+
+    Vec3f toRest(const Vec3f& p) const { return mover != nullptr ? mover->toRest(p) : p; }
+  };
+
+  void addFrame(const GammaContext& context, const MovingSurface* mover,
+                std::vector<std::shared_ptr<const Surface>> surfaces,
+                std::unique_ptr<GammaMethod> (*make)(const GammaContext&)) {
+    auto boundary = std::make_unique<const Boundary>(Boundary::atRest(std::move(surfaces)));
+    const GammaContext own{*boundary,       context.kernel, context.supportRadius, context.directions,
+                           context.samples, context.region, context.pool,          context.place};
+    std::unique_ptr<GammaMethod> method = make(own);
+    frames_.push_back({mover, std::move(boundary), std::move(method)});
+  }
+
+  const Boundary& boundary_;
+  float support_;
+  std::unique_ptr<GammaMethod> whole_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace
+
+std::unique_ptr<GammaMethod> makeMovingGamma(const GammaContext& context,
+                                             std::unique_ptr<GammaMethod> (*make)(const GammaContext&)) {
+  return std::make_unique<MovingGamma>(context, make);
+}
+
+}  // namespace migiwa

@@ -1,0 +1,43 @@
+// Gamma of many points at once, with the vector instructions of the processor at hand.
+#pragma once
+
+#include <span>
+
+#include "core/gamma/gamma_method.h"
+#include "core/gamma/half_spaces.h"
+#include "core/sph/kernels.h"
+#include "core/walls/surface.h"
+
+namespace migiwa {
+
+// The product over planes for many points at once, with the vector instructions of the processor at hand.
+
+/// gamma as the product over the planes' axes. Distances are those to the planes: behind two of them they are
+/// too short.
+void productOfPlanes(const FlatPlanes& walls, KernelType kernel, float supportRadius,
+                     std::span<const Float4> points, std::span<GammaSample> out);
+
+// Sums over fixed directions of what a kernel holds up to the first wall, with the vector instructions of the
+// processor at hand. The order of the sum depends on the width of its vectors, so processors agree within
+// rounding.
+
+/// Directions that are summed eight at a time: neighbours look nearly the same way, and there is no rest.
+Directions groupedDirections(int count);
+
+/// Sums of G(r) and of (H(r) - H(1)) w, for the density kernel and for the kernel of the pair gradients.
+struct RaySums {
+  float mass = 0;
+  Vec3f slope = Vec3f::Zero(), pairSlope = Vec3f::Zero();
+};
+
+/// Adds `sign` times what the rays hold up to `hits` (m).
+void addRays(KernelType kernel, const Directions& directions, std::span<const float> hits,
+             float supportRadius, float sign, RaySums& sums);
+
+/// What the rays hold up to the first of the planes, less what they hold up to the first plane alone: the
+/// rest that directions add to a closed form. A point behind a plane is taken to lie on it. At most
+/// kMostRayPlanes of them.
+inline constexpr std::size_t kMostRayPlanes = 64;
+RaySums beyondFirstPlane(KernelType kernel, const Directions& directions, std::span<const HalfSpace> planes);
+
+}  // namespace migiwa

@@ -1,0 +1,180 @@
+// Where fluid comes from: sources that are filled at the start, and emitters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/fields.h"
+#include "core/base/math.h"
+#include "core/slim/points.h"
+
+namespace migiwa {
+
+// A region that is filled with fluid at the start. A source is one file that implements this interface and
+// one line in core/scene/sources.cpp.
+
+class FluidSource {
+ public:
+  virtual ~FluidSource() = default;
+
+  /// Visits the shape's own fields of the scene file's object, then checks and prepares what follows from
+  /// them.
+  virtual void describe(FieldVisitor& visitor) = 0;
+  /// Visits the same fields, and changes nothing.
+  virtual void describe(FieldWriter& visitor) const = 0;
+  /// How many particles fill() makes at most, without making them.
+  virtual double count(double spacing) const = 0;
+  /// Appends the centres of a cell-centred lattice of the given spacing (m) that lie in the region.
+  virtual void fill(double spacing, std::vector<Vec3d>& out) const = 0;
+  virtual Bounds bounds() const = 0;
+
+  /// Fields that every source has.
+  Vec3d velocity = Vec3d::Zero();  ///< initial velocity (unit: m/s)
+  bool trim = true;  ///< leave out centres that are less than half a spacing inside the fluid side
+};
+
+/// Names for the scene's "shape" key, in the order of makeFluidSource's index.
+std::span<const std::string_view> fluidShapes();
+std::unique_ptr<FluidSource> makeFluidSource(int shape);
+
+// A box full of fluid, upright or turned about its centre.
+
+/// The lattice has round(length / spacing) cells along each axis of the box and begins at `min`, so that a
+/// box in a corner of a tank touches its walls whatever its lengths are.
+class BoxSource final : public FluidSource {
+ public:
+  BoxSource() = default;
+  BoxSource(const Vec3d& min, const Vec3d& max, const Rotation& rotation = {});
+
+  void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
+  double count(double spacing) const override;
+  void fill(double spacing, std::vector<Vec3d>& out) const override;
+  Bounds bounds() const override;
+
+ private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, BoxSource>& self);
+  /// Cells along each axis, as real numbers: they may be more than an integer holds.
+  Vec3d cells(double spacing) const;
+  Vec3d toWorld(const Vec3d& p) const;
+
+  Vec3d min_ = Vec3d::Zero();
+  Vec3d max_ = Vec3d::Ones();
+  Rotation rotation_;
+};
+
+// A ball of fluid.
+
+/// The lattice has round(diameter / spacing) cells along each axis, centred on the ball; the cells whose
+/// centres lie in the ball are filled.
+class SphereSource final : public FluidSource {
+ public:
+  SphereSource() = default;
+  SphereSource(const Vec3d& center, double radius) : center_(center), radius_(radius) {}
+
+  void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
+  double count(double spacing) const override;
+  void fill(double spacing, std::vector<Vec3d>& out) const override;
+  Bounds bounds() const override;
+
+ private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, SphereSource>& self);
+  Vec3d center_ = Vec3d::Zero();
+  double radius_ = 1;
+};
+
+// The inside of a closed mesh, full of fluid.
+
+/// The lattice has round(length / spacing) cells along each axis of the mesh's bounds, centred on them; the
+/// cells whose centres lie in the mesh are filled.
+class MeshSource final : public FluidSource {
+ public:
+  MeshSource() = default;
+  explicit MeshSource(TriangleMesh mesh);
+
+  void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
+  double count(double spacing) const override;
+  void fill(double spacing, std::vector<Vec3d>& out) const override;
+  Bounds bounds() const override { return mesh_.bounds(); }
+
+ private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, MeshSource>& self);
+  void measure();
+
+  FileName file_;
+  Transform transform_;
+  TriangleMesh mesh_;
+  double volume_ = 0, area_ = 0;  ///< (m^3, m^2)
+};
+
+// A mouth that gives fluid while the simulation runs: a faucet, a nozzle, a spring. It gives whole layers of
+// particles, one behind the other, so that the density is right from the mouth on and the volume follows the
+// rate to within a layer.
+
+enum class MouthShape { disc, rectangle };
+inline constexpr std::array<std::string_view, 2> kMouthShapeNames{"disc", "rectangle"};
+
+struct Emitter {
+  MouthShape shape = MouthShape::disc;
+  Vec3d center = Vec3d::Zero();          ///< of the mouth (unit: m)
+  double radius = 0.1;                   ///< of a disc (unit: m)
+  std::array<double, 2> size{0.2, 0.2};  ///< of a rectangle, along its x axis and across (unit: m)
+  Vec3d xAxis = Vec3d::Zero();           ///< of a rectangle; zero: any
+  Vec3d direction = -Vec3d::UnitY();     ///< in which the fluid leaves; any length but zero
+  double speed = 0;                      ///< of the fluid at the mouth (unit: m/s); zero: by the rate
+  double rate = 0;                       ///< volume in a second (unit: m^3/s); zero: by the speed
+  double start = 0;                      ///< (unit: s)
+  double stop = 1e6;                     ///< (unit: s)
+  int particles = 100000;                ///< that it gives at most
+
+  /// Visits the fields of the scene file's object. `spacing` (m) is the particles'; zero: not known.
+  void describe(FieldVisitor& visitor, double spacing);
+  void describe(FieldWriter& visitor) const;
+
+  double area() const;  ///< (m^2)
+  /// Speed of the fluid at the mouth (m/s), whichever of speed and rate is given.
+  double mouthSpeed() const { return rate > 0 ? rate / area() : speed; }
+  /// Particles that it gives up to `time` (s), at most: a layer more than the rate asks for.
+  double count(double spacing, double time) const;
+  Bounds bounds() const;
+
+ private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, Emitter>& self);
+  void check(FieldVisitor& visitor, double spacing);
+};
+
+/// A layer of particles in the mouth.
+struct MouthLayer {
+  std::vector<Vec3d> places;  ///< (m)
+  double thickness = 0;       ///< distance to the next layer (m): area * thickness holds the layer's volume
+};
+MouthLayer mouthLayer(const Emitter& emitter, double spacing);
+
+// The cells of a lattice whose centres lie in a closed mesh. The cost follows the mesh: only columns of cells
+// that it crosses are looked at, and of each only the cells within, however much of its bounding box is
+// empty.
+
+/// What filling took, for tests of its cost.
+struct MeshFillWork {
+  std::int64_t lines = 0;    ///< rows of columns that were cut with a triangle
+  std::int64_t columns = 0;  ///< columns that were tested against a triangle
+  std::int64_t cells = 0;    ///< cells that were filled
+  std::size_t mostHeld = 0;  ///< crossings and cells that were held at once beside the result
+};
+
+/// Appends the centres of the cells that lie in the mesh, by z, then y, then x. The lattice has
+/// round(length / spacing) cells along each axis of the mesh's bounds, centred on them. `spacing` in m; the
+/// lattice must have fewer than 2^53 cells along each axis.
+MeshFillWork fillMesh(const TriangleMesh& mesh, double spacing, std::vector<Vec3d>& out);
+
+}  // namespace migiwa

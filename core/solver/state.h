@@ -1,0 +1,215 @@
+// The state that the stages of a step share: what lasts, the scratch buffers and the record of a step.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/base/math.h"
+#include "core/base/parallel.h"
+#include "core/gamma/gamma_method.h"
+#include "core/solver/energy.h"
+#include "core/solver/parameters.h"
+#include "core/sph/kernels.h"
+#include "core/sph/neighbours.h"
+#include "core/walls/boundary.h"
+
+namespace migiwa {
+
+/// Density error max(rho/rho0 - 1, 0) over the particles, after an iteration.
+struct IterationError {
+  double mean = 0;
+  double max = 0;
+  double meanSquare = 0;  ///< mean of the squares
+};
+
+struct Particles {
+  std::vector<Float4> position;  ///< (m); w: a clearance to walls (m) that it has at least, 0: not known
+  std::vector<Float4> velocity;  ///< (m/s)
+  std::vector<std::uint32_t> id;
+  std::size_t size() const { return id.size(); }
+};
+
+/// A particle near a wall: where gamma was last evaluated, and what it was there.
+struct WallSlot {
+  std::uint32_t particle;
+  Float4 at;           ///< point of evaluation (m)
+  GammaSample sample;  ///< at that point
+};
+
+/// Without the room for growth that std::vector would add: at millions of particles it is felt.
+template <class T>
+void resizeTight(std::vector<T>& values, std::size_t size) {
+  values.reserve(size);
+  values.resize(size);
+}
+
+/// Of the start of a step; velocities with gravity's gain.
+struct BeforeStep {
+  std::vector<Float4> position, velocity;
+};
+
+/// A push by a wall that gives no speed: where its particle began the step until then.
+struct SuppressedPush {
+  std::uint32_t id;
+  Float4 began;
+};
+
+/// What lasts from step to step. gamma is evaluated anew only where a particle has moved, so what was
+/// evaluated lasts, too.
+struct FluidState {
+  static constexpr std::uint32_t kNoWall = std::numeric_limits<std::uint32_t>::max();
+
+  Particles particles;
+  std::vector<WallSlot> wallSlots;
+  std::vector<std::uint32_t> wallSlot;  ///< of each particle, or kNoWall
+};
+
+/// Where a step works: the memory stays, the values belong to one step. Arrays that passes over neighbours
+/// read end with the ghost that fills up the neighbour lists.
+struct StepBuffers {
+  std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
+  std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
+  std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
+  BeforeStep before;             ///< to take back the step, or energy that it made; empty without guards
+  std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
+  CellGrid grid;
+  NeighbourLists neighbours;
+  std::vector<float> gamma;
+  std::vector<float> density;  ///< rho/rho0
+  std::vector<float> lambda;   ///< Eq. 11 over the squared support radius (1)
+};
+
+/// What happened in a step, for the report.
+struct StepRecord {
+  std::vector<IterationError> errors;
+  int iterations = 0;
+
+  // Guards that acted.
+  long gammaFloored = 0;
+  std::vector<SuppressedPush> suppressedPushes;
+  long spreadParticles = 0;                         ///< off overfull cells, see stages::spreadOverfullCells
+  mutable std::atomic<bool> metCoincident = false;  ///< a pass over pairs met one on one point
+
+  // Energy that the step was given, see core/solver/energy.h.
+  WallWork wallWork;
+  double effectWork = 0;          ///< by the effects (m^2/s^2); friction at moving walls included
+  double velocityEffectWork = 0;  ///< the part of those on velocities (m^2/s^2)
+
+  PressureSum pressure;
+  StageTimes times;
+
+  /// Before a step. Errors, work and pressure begin with the stages that add to them.
+  void clear() {
+    gammaFloored = spreadParticles = 0;
+    suppressedPushes.clear();
+    metCoincident = false;
+    times.clear();
+  }
+};
+
+/// All that the stages of a step read and write. Per-particle arrays share one order, along the search grid;
+/// `id` tells particles apart across steps. Lengths are metres; densities are rho/rho0; gradients are per
+/// support radius, so that nothing over- or underflows with the size of the scene.
+struct StepState : FluidState, StepBuffers, StepRecord {
+  StepState(ThreadPool& threadPool, const Boundary& walls) : pool(threadPool), boundary(walls) {}
+
+  ThreadPool& pool;
+  const Boundary& boundary;
+  std::vector<const Surface*> thinWalls;       ///< thinner than the support radius
+  std::vector<const Surface*> collisionWalls;  ///< of continuous collision: thin walls, and those that move
+  const GammaMethod* gammaMethod = nullptr;    ///< null: no correction
+  SolverParameters parameters;
+  bool guards = true;             ///< see Guards
+  Vec3f gravity = Vec3f::Zero();  ///< (m/s^2)
+  float spacing = 0;              ///< (m)
+  float supportRadius = 0;        ///< (m)
+  RestingLattice lattice{};
+  float timeStep = 0;  ///< of this substep (s)
+
+  /// Whether the walls' part of the density is added, rather than divided by gamma.
+  bool addsWallDensity() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::added; }
+  /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
+  /// times the constraint's derivative with respect to gamma.
+  float wallPush(std::size_t i) const {
+    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / gamma[i];
+  }
+  /// Centres stay this far inside the fluid side (m).
+  float wallMargin() const { return 0.5F * spacing; }
+};
+
+// How far from every wall a particle is at least, without asking the walls: what was measured somewhere, less
+// the way from there. Where that is enough, walls have nothing to say.
+
+/// A bound for how fast the distances of walls change along a way. Of true distances it is 1; those of
+/// splines and of SLIM surfaces overshoot a little about creases.
+constexpr float kSteepestDistance = 1.5F;
+
+/// A clearance (m) that is known at `there`, as known at p.
+inline float clearanceAt(const Vec3f& p, const Vec3f& there, float clearance) {
+  return clearance - kSteepestDistance * (p - there).norm();
+}
+
+/// The least distance (m) to walls that particle i can have at p, by what its step began with and by its wall
+/// slot. 0: nothing is known; always so where walls
+/// are not steady.
+inline float knownClearance(const StepState& state, std::size_t i, const Vec3f& p) {
+  if (!state.boundary.steady()) return 0;
+  const Float4& start = state.particles.position[i];
+  float clearance = clearanceAt(p, start.xyz(), start.w);
+  if (const std::uint32_t slot = state.wallSlot[i]; slot != FluidState::kNoWall) {
+    const WallSlot& wall = state.wallSlots[slot];
+    clearance = std::max(clearance, clearanceAt(p, wall.at.xyz(), wall.sample.distance));
+  }
+  return std::max(clearance, 0.0F);
+}
+
+// Chebyshev semi-iteration (Golub & Varga 1961; Wang 2015 for position based methods): every Jacobi-like step
+// is stretched away from the iterate before the last, x_{k+1} = x_{k-1} + w_k (step(x_k) - x_{k-1}).
+
+/// The weights w_k, one an iteration.
+class Chebyshev {
+ public:
+  /// Of the iteration that follows the given errors, in a solve that ends at `tolerance`. The first two are
+  /// 1: they take away the errors that stretching would feed. So is the one that is about to end the solve by
+  /// itself, going by how much the one before it achieved: stretched, it would overshoot, and fluid at rest
+  /// would never calm down, for nothing pulls back what is pushed apart too far.
+  float next(const std::vector<IterationError>& errors, double tolerance) {
+    // An estimate of the plain iteration's spectral radius. Larger ones converge faster still at rest, and
+    // double the density peaks of impacts.
+    constexpr float kRadius2 = 0.9F * 0.9F;
+    constexpr std::size_t kPlain = 2;
+    if (errors.size() <= kPlain) return 1;
+    weight_ = weight_ == 1 ? 2 / (2 - kRadius2) : 4 / (4 - kRadius2 * weight_);
+    const double error = errors.back().mean, before = errors[errors.size() - 2].mean;
+    return error * error <= tolerance * before ? 1 : weight_;
+  }
+
+ private:
+  float weight_ = 1;
+};
+
+// Which way two particles part that are on one point.
+
+/// A unit direction for two particles on one point, from their ids: antisymmetric, so that momentum is
+/// conserved.
+inline Vec3f coincidentDirection(std::uint32_t id, std::uint32_t other) {
+  const std::uint32_t low = id < other ? id : other, high = id < other ? other : id;
+  std::uint32_t bits = low * 0x9E3779B1U ^ (high * 0x85EBCA77U + 0xC2B2AE3DU);
+  const auto next = [&bits] {
+    bits ^= bits >> 15, bits *= 0x2C1B3C6DU, bits ^= bits >> 12, bits *= 0x297A2D39U, bits ^= bits >> 15;
+    return static_cast<float>(bits >> 8) / 8388608.0F - 1;
+  };
+  const float x = next(), y = next(), z = next();
+  const Vec3f direction(x, y, z);
+  const float length = direction.norm();
+  const Vec3f unit = length > 1e-3F ? Vec3f(direction / length) : Vec3f(Vec3f::UnitX());
+  return id < other ? unit : Vec3f(-unit);
+}
+
+/// How far apart they are taken to be, over the support radius.
+inline constexpr float kCoincident = 1e-5F;
+
+}  // namespace migiwa

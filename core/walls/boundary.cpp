@@ -1,0 +1,176 @@
+#include "core/walls/boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/fields.h"
+#include "core/base/math.h"
+#include "core/walls/shapes.h"
+#include "core/walls/slim_wall.h"
+#include "core/walls/surface.h"
+
+namespace migiwa {
+
+Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfaces_(std::move(surfaces)) {
+  for (auto& surface : surfaces_) {
+    if (!surface->motion) continue;
+    const auto same = std::find_if(moving_.begin(), moving_.end(), [&](const auto& known) {
+      return known->motion().sameAs(*surface->motion);
+    });
+    const int group = same != moving_.end() ? (*same)->group() : static_cast<int>(moving_.size());
+    moving_.push_back(std::make_shared<MovingSurface>(surface, group));
+    surface = moving_.back();
+  }
+  steady_ = standsSteadily();
+}
+
+bool Boundary::standsSteadily() const {
+  return moving_.empty() && std::all_of(surfaces_.begin(), surfaces_.end(),
+                                        [](const auto& surface) { return surface->steadyDistance(); });
+}
+
+Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) {
+  Boundary boundary;
+  boundary.surfaces_ = std::move(surfaces);
+  boundary.steady_ = boundary.standsSteadily();
+  return boundary;
+}
+
+void Boundary::moveTo(double before, double now) {
+  for (const auto& surface : moving_) surface->moveTo(before, now);
+}
+
+Vec3f Boundary::nearestVelocity(const Vec3f& p) const {
+  const Surface* nearest = nullptr;
+  float least = std::numeric_limits<float>::infinity();
+  for (const auto& surface : surfaces_) {
+    Vec3f normal;
+    const float d = surface->distance(p, normal);
+    if (d >= least) continue;
+    least = d;
+    nearest = surface.get();
+  }
+  return nearest != nullptr ? nearest->velocity(p) : Vec3f(Vec3f::Zero());
+}
+
+float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  normal.setZero();
+  for (const auto& surface : surfaces_) {
+    Vec3f n;
+    const float d = surface->distance(p, n);
+    if (d < nearest) {
+      nearest = d;
+      normal = n;
+    }
+  }
+  return nearest;
+}
+
+float Boundary::distance(const Vec3f& p) const {
+  Vec3f normal;
+  return distance(p, normal);
+}
+
+bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
+  // Each surface in turn until none moves the point. Where surfaces leave no room the point swings between
+  // them, and the mean of the last swing lies midway.
+  constexpr int kRounds = 16;
+  const Vec3f start = p;
+  const float rounding = 1e-4F * margin;
+  Vec3f middle = p;
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3f sum = Vec3f::Zero();
+    int moves = 0;
+    float farthest = 0;
+    for (const auto& surface : surfaces_) {
+      const Vec3f before = p;
+      if (!surface->project(p, margin)) continue;
+      farthest = std::max(farthest, (p - before).norm());
+      sum += p;
+      ++moves;
+    }
+    if (farthest <= rounding) {
+      fits = true;
+      return p != start;
+    }
+    middle = sum / static_cast<float>(moves);
+  }
+  fits = false;
+  p = middle;
+  return true;
+}
+
+bool Boundary::project(Vec3f& p, float margin) const {
+  if (surfaces_.empty()) return false;
+  if (surfaces_.size() == 1) return surfaces_.front()->project(p, margin);
+  const Vec3f start = p;
+  bool fits = true;
+  const bool moved = projectInTurn(p, margin, fits);
+  if (fits) return moved;
+
+  // The shortest way out of one wall leads into another: take the shortest of the other ways that end in the
+  // fluid.
+  std::vector<Vec3f> ways;
+  for (const auto& surface : surfaces_) surface->otherWaysOut(start, margin, ways);
+  float best = std::numeric_limits<float>::infinity();
+  for (Vec3f& way : ways) {
+    projectInTurn(way, margin, fits);
+    const float length = (way - start).norm();
+    if (!fits || length >= best) continue;
+    best = length;
+    p = way;
+  }
+  return true;
+}
+
+namespace {
+
+struct Entry {
+  std::string_view name;
+  std::unique_ptr<Surface> (*make)();
+};
+
+template <class Shape>
+std::unique_ptr<Surface> make() {
+  return std::make_unique<Shape>();
+}
+
+constexpr std::array kShapes{
+    Entry{"plane", make<Plane>},           Entry{"box", make<Box>},          Entry{"sphere", make<Sphere>},
+    Entry{"polynomial", make<Polynomial>}, Entry{"slim", make<SlimSurface>}, Entry{"mesh", make<MeshSurface>},
+};
+
+}  // namespace
+
+std::span<const std::string_view> surfaceShapes() {
+  return registryNames<kShapes>();
+}
+
+std::unique_ptr<Surface> makeSurface(int shape) {
+  return kShapes.at(static_cast<std::size_t>(shape)).make();
+}
+
+Directions fibonacciDirections(int count) {
+  Directions set;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (int k = 0; k < count; ++k) {
+    const double z = 1 - (2.0 * k + 1) / count;
+    const double radius = std::sqrt(1 - z * z);
+    set.x.push_back(static_cast<float>(radius * portable::cos(golden * k)));
+    set.y.push_back(static_cast<float>(radius * portable::sin(golden * k)));
+    set.z.push_back(static_cast<float>(z));
+  }
+  return set;
+}
+
+void Surface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {
+  Vec3f normal;
+  const float d = distance(p, normal);
+  if (std::abs(d) < reach) out.push_back({normal, d, p - d * normal});
+}
+
+}  // namespace migiwa

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/walls/shapes.h"
+#include "core/walls/surface.h"
+
+namespace migiwa {
+
+namespace {
+constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
+}
+
+Box::Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotation)
+    : min_(min), max_(max), rotation_(rotation), fluid_(fluid) {
+  prepare();
+}
+
+template <class Visitor>
+void Box::fields(Visitor& visitor, Visited<Visitor, Box>& self) {
+  visitor.choice("fluid", self.fluid_, kFluidNames,
+                 {"", "The side of the wall that holds the fluid.", Presence::required});
+  visitor.vector("min", self.min_,
+                 {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+  visitor.vector("max", self.max_,
+                 {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+  visitor.object("rotation", {"", "Turns the box about its centre."},
+                 [&](auto& rotation) { Rotation::describe(rotation, self.rotation_); });
+}
+
+void Box::describe(FieldWriter& visitor) const {
+  fields(visitor, *this);
+}
+
+void Box::describe(FieldVisitor& visitor) {
+  fields(visitor, *this);
+  if (visitor.valid({"min", "max"}) && (max_.array() <= min_.array()).any()) {
+    visitor.fault("max", "expected every coordinate to be larger than that of min, found one that is not");
+  } else {
+    prepare();
+  }
+}
+
+void Box::prepare() {
+  geometry_ = {0.5 * (min_ + max_), rotation_.matrix(), 0.5 * (max_ - min_)};
+  center_ = geometry_.center.cast<float>();
+  half_ = geometry_.halfExtents.cast<float>();
+  toLocal_ = geometry_.axes.transpose().cast<float>();
+}
+
+float Box::distance(const Vec3f& p, Vec3f& normal) const {
+  const Vec3f local = toLocal(p);
+  // Per axis: how far beyond (positive) or within (negative) the faces.
+  const Vec3f beyond = local.cwiseAbs() - half_;
+  Vec3f outward;
+  float outside;  // signed distance, positive outside the box
+  if (beyond.maxCoeff() > 0) {
+    const Vec3f positive = beyond.cwiseMax(0.0F);
+    outside = positive.norm();
+    outward = positive / outside;
+  } else {
+    int axis = 0;
+    outside = beyond.maxCoeff(&axis);
+    outward = Vec3f::Unit(axis);
+  }
+  for (int axis = 0; axis < 3; ++axis) outward[axis] = std::copysign(outward[axis], local[axis]);
+  outward = toLocal_.transpose() * outward;
+  normal = fluid_ == Fluid::inside ? Vec3f(-outward) : outward;
+  return fluid_ == Fluid::inside ? -outside : outside;
+}
+
+bool Box::project(Vec3f& p, float margin) const {
+  Vec3f local = toLocal(p);
+  if (fluid_ == Fluid::inside) {
+    const Vec3f room = (half_.array() - margin).max(0.0F);  // zero: no room, stay midway
+    const Vec3f clamped = local.cwiseMax(-room).cwiseMin(room);
+    if (clamped == local) return false;
+    p = toWorld(clamped);
+    return true;
+  }
+  const Vec3f beyond = local.cwiseAbs() - half_;
+  if (beyond.maxCoeff() > 0) {
+    const Vec3f positive = beyond.cwiseMax(0.0F);
+    const float outside = positive.norm();
+    if (outside >= margin) return false;
+    for (int axis = 0; axis < 3; ++axis)
+      local[axis] += std::copysign(positive[axis] * (margin / outside - 1), local[axis]);
+  } else {
+    int axis = 0;
+    beyond.maxCoeff(&axis);
+    local[axis] = std::copysign(half_[axis] + margin, local[axis]);
+  }
+  p = toWorld(local);
+  return true;
+}
+
+void Box::otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const {
+  if (fluid_ == Fluid::inside) return;
+  const Vec3f local = toLocal(p);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0F, 1.0F}) {
+      Vec3f way = local;
+      way[axis] = side * (half_[axis] + margin);
+      out.push_back(toWorld(way));
+    }
+  }
+}
+
+void Box::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {
+  const Vec3f local = toLocal(p);
+  const Vec3f onBox = local.cwiseMax(-half_).cwiseMin(half_);
+  const bool inside = fluid_ == Fluid::inside;
+  if (!inside && (local - onBox).squaredNorm() >= reach * reach) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0F, 1.0F}) {
+      const float within = half_[axis] - side * local[axis];  // distance to the face, positive inside the box
+      if (std::abs(within) >= reach) continue;
+      Vec3f foot = onBox;
+      foot[axis] = side * half_[axis];
+      const Vec3f outward = side * toLocal_.row(axis).transpose();
+      out.push_back({inside ? Vec3f(-outward) : outward, inside ? within : -within, toWorld(foot)});
+    }
+  }
+}
+
+void Box::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
+  const Vec3f local = toLocal(origin);
+  if (fluid_ == Fluid::inside) {
+    const float farthest = *std::max_element(hits.begin(), hits.end());
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float side : {-1.0F, 1.0F}) {
+        const float within = half_[axis] - side * local[axis];
+        if (within < farthest) hitPlane(-side * toLocal_.row(axis).transpose(), within, directions, hits);
+      }
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const auto [enter, leave] = crossing(local, directions, k);
+    if (enter < leave && leave > 0) hits[k] = std::min(hits[k], std::max(enter, 0.0F));
+  }
+}
+
+void Box::exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const {
+  const Vec3f local = toLocal(origin);
+  for (std::size_t k = 0; k < exits.size(); ++k) exits[k] = crossing(local, directions, k).leave;
+}
+
+float Box::thickness() const {
+  return fluid_ == Fluid::outside ? 2 * half_.minCoeff() : Surface::thickness();
+}
+
+bool Box::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  if (fluid_ == Fluid::inside) return false;
+  const Vec3f start = toLocal(from), way = toLocal(to) - start;
+  float enter = -std::numeric_limits<float>::infinity(), leave = std::numeric_limits<float>::infinity();
+  int face = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way[axis] == 0) {
+      if (std::abs(start[axis]) >= half_[axis]) return false;
+      continue;
+    }
+    const float in = (std::copysign(half_[axis], -way[axis]) - start[axis]) / way[axis];
+    if (in > enter) {
+      enter = in;
+      face = axis;
+    }
+    leave = std::min(leave, (std::copysign(half_[axis], way[axis]) - start[axis]) / way[axis]);
+  }
+  entry = std::max(enter, 0.0F);
+  if (entry >= std::min(leave, 1.0F)) return false;
+  normal = std::copysign(1.0F, -way[face]) * toLocal_.row(face).transpose();
+  return true;
+}
+
+Box::Crossing Box::crossing(const Vec3f& local, const Directions& directions, std::size_t k) const {
+  // Slabs: the ray is in the block between the last entry into a pair of faces and the first exit from one.
+  const Vec3f w = toLocal_ * Vec3f(directions.x[k], directions.y[k], directions.z[k]);
+  Crossing crossing{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float along = w[axis];
+    if (std::abs(along) < 1e-9F) {  // along the faces: between them, or not
+      if (std::abs(local[axis]) >= half_[axis]) return {1, 0};
+      continue;
+    }
+    crossing.enter = std::max(crossing.enter, (std::copysign(half_[axis], -along) - local[axis]) / along);
+    crossing.leave = std::min(crossing.leave, (std::copysign(half_[axis], along) - local[axis]) / along);
+  }
+  return crossing;
+}
+
+Vec3d Box::corner(int index) const {
+  const Vec3d signs((index & 1) != 0 ? 1 : -1, (index & 2) != 0 ? 1 : -1, (index & 4) != 0 ? 1 : -1);
+  return geometry_.center + geometry_.axes * geometry_.halfExtents.cwiseProduct(signs);
+}
+
+Bounds Box::bounds() const {
+  Bounds bounds;
+  for (int index = 0; index < 8; ++index) bounds.include(corner(index));
+  return bounds;
+}
+
+void Box::wireframe(const Bounds&, std::vector<LineSegment>& out) const {
+  for (int index = 0; index < 8; ++index)
+    for (const int bit : {1, 2, 4})
+      if ((index & bit) == 0) out.push_back({corner(index).cast<float>(), corner(index | bit).cast<float>()});
+}
+
+}  // namespace migiwa

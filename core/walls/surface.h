@@ -1,0 +1,236 @@
+// A wall: what every shape answers, and what it is asked with.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/base/fields.h"
+#include "core/base/math.h"
+#include "core/slim/points.h"
+
+namespace migiwa {
+
+// A fixed set of unit vectors spread evenly over the sphere, coordinate by coordinate so that loops over it
+// vectorise.
+
+struct Directions {
+  std::vector<float> x, y, z;
+  std::size_t size() const { return x.size(); }
+};
+
+/// A Fibonacci set: `count` points on a spiral, equal areas to each.
+Directions fibonacciDirections(int count);
+
+// How a wall moves, as scenes write it: at a constant velocity, in a turn about an axis, to and fro, or by
+// keyframes; what is named adds up. A motion is a function of time alone, so nothing of it needs saving.
+
+/// A rigid move: a rotation and a translation after it (m).
+using Pose = Eigen::Isometry3d;
+
+/// Where a wall is at a time, relative to where the scene puts it.
+struct Keyframe {
+  double time = 0;                  ///< (unit: s)
+  Vec3d translate = Vec3d::Zero();  ///< (unit: m)
+  double degrees = 0;               ///< about the motion's axis (unit: degrees)
+};
+
+/// How places between keyframes follow.
+enum class Interpolation {
+  smooth,  ///< at rest at each keyframe: 3 s^2 - 2 s^3 of the way
+  linear   ///< at a constant velocity from one to the next
+};
+
+struct Motion {
+  Vec3d velocity = Vec3d::Zero();  ///< (unit: m/s)
+
+  bool turns = false;           ///< whether there is an axis
+  Vec3d axis = Vec3d::UnitY();  ///< of every turn, right-handed; it moves along with the wall
+  Vec3d point = Vec3d::Zero();  ///< of the axis (unit: m)
+  double degreesPerSecond = 0;  ///< (unit: degrees/s)
+
+  bool oscillates = false;
+  Vec3d amplitude = Vec3d::Zero();  ///< of the sway (unit: m)
+  double swing = 0;                 ///< amplitude of the turn about the axis (unit: degrees)
+  double period = 1;                ///< (unit: s)
+
+  double start = 0;   ///< velocity, turn and oscillation begin (unit: s)
+  double stop = 1e6;  ///< and end, and the wall stays where it is then (unit: s)
+
+  std::vector<Keyframe> keyframes;
+  Interpolation interpolation = Interpolation::smooth;
+
+  /// Visits the keys of the scene's object "motion", then checks what follows from them.
+  void describe(FieldVisitor& visitor);
+  void describe(FieldWriter& visitor) const;
+  /// From where the scene puts the wall to where it is at `time` (s).
+  Pose at(double time) const;
+  /// Whether two walls with these motions never move relative to each other.
+  bool sameAs(const Motion& other) const;
+};
+
+// What pictures show of walls: plain data, in the scene's space (m).
+
+struct LineSegment {
+  Vec3f from, to;
+};
+
+/// A wall to be shaded. Seen from the fluid its triangles run counter-clockwise.
+struct WallMesh {
+  TriangleMesh surface;
+  std::vector<Vec3f> normals;  ///< at each vertex, unit, into the fluid
+  bool vessel = false;         ///< holds the fluid, so that its near side must not hide what is within
+};
+
+/// The core of a ball of a SLIM surface, as a disc that touches the surface.
+struct WallNode {
+  Vec3f centre;      ///< on the surface (m)
+  Vec3f normal;      ///< unit, into the fluid
+  float ballRadius;  ///< (m)
+  float discRadius;  ///< (m)
+  bool vessel;       ///< as of its WallMesh
+};
+
+struct WallDrawing {
+  std::vector<LineSegment> lines;
+  std::vector<WallMesh> meshes;
+  std::vector<WallNode> nodes;
+};
+
+// One solid wall: where it is, and nothing of gamma. A shape is one file that implements this interface and
+// one line in core/walls/boundary.cpp. Distances are metres, positive in the fluid; normals are unit vectors
+// into the fluid.
+
+/// A planar piece of a wall as seen from one point.
+struct WallPiece {
+  Vec3f normal;         ///< unit, into the fluid
+  float planeDistance;  ///< signed distance of the point to the piece's plane (m)
+  Vec3f foot;           ///< closest point of the piece itself
+};
+
+/// How the pieces of one surface make up its solid.
+enum class PieceRule {
+  fluidInsideAll,  ///< the fluid is the intersection of the pieces' fluid sides: a tank
+  solidInsideAll,  ///< the solid is the intersection of the pieces' solid sides: a block
+};
+
+/// A box tank as the settled measures need it: axes, extents, and whether the fluid is inside.
+struct BoxGeometry {
+  Vec3d center;
+  Eigen::Matrix3d axes;  ///< columns: unit axes
+  Vec3d halfExtents;     ///< metres
+};
+
+class Surface {
+ public:
+  virtual ~Surface() = default;
+
+  /// Visits the fields of the scene file's object, then checks and prepares what follows from them.
+  virtual void describe(FieldVisitor& visitor) = 0;
+  /// Visits the same fields, and changes nothing.
+  virtual void describe(FieldWriter& visitor) const = 0;
+
+  /// How the wall moves; none: it stands still. What moves is a MovingSurface about this one, which a
+  /// Boundary makes for itself, so that surfaces can be shared.
+  std::optional<Motion> motion;
+
+  /// Velocity (m/s) over the last step of the wall's material at p.
+  virtual Vec3f velocity(const Vec3f& /*p*/) const { return Vec3f::Zero(); }
+  /// Where a point is now that has kept its place relative to the wall over the last step.
+  virtual Vec3f carried(const Vec3f& p) const { return p; }
+
+  /// Signed distance of p, and the unit normal at the nearest point of the wall.
+  virtual float distance(const Vec3f& p, Vec3f& normal) const = 0;
+
+  /// Whether the fluid's distances are those of a closed solid, without jumps, so that how far a point can
+  /// have come bounds how much nearer it is.
+  virtual bool steadyDistance() const { return true; }
+  /// Whether distance() takes so long that a grid in its place pays: true only for a solid that is closed.
+  virtual bool costlyDistance() const { return false; }
+  /// The shape itself where this one stands for it with approximate distances; null where it is exact.
+  virtual std::shared_ptr<const Surface> exact() const { return nullptr; }
+
+  /// Mean distance (m) of the wall from the shape that it was fitted to; null where it is what it says, or
+  /// that shape is not at hand. Reads the shape anew.
+  virtual std::optional<double> fitError() const { return std::nullopt; }
+
+  /// Moves p to where its distance is at least `margin`, by the shortest way the shape knows; midway where
+  /// two of its walls leave no room. Returns whether p moved.
+  virtual bool project(Vec3f& p, float margin) const = 0;
+
+  /// Appends other points at `margin` that p could be moved to, for where other walls bar the shortest way.
+  virtual void otherWaysOut(const Vec3f&, float /*margin*/, std::vector<Vec3f>&) const {}
+
+  /// hits[k] becomes the distance (m) from `origin` along direction k to the first point of the solid, where
+  /// that is less than hits[k]. The origin is on the fluid side.
+  virtual void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const = 0;
+  /// Whether a ray that has hit the solid may come out of it again into fluid.
+  virtual bool reentrant() const { return false; }
+  /// Where it may: exits[k] becomes where direction k leaves the solid that it has hit, infinite where it
+  /// does not.
+  virtual void exits(const Vec3f&, const Directions&, std::span<float> exits) const {
+    std::fill(exits.begin(), exits.end(), std::numeric_limits<float>::infinity());
+  }
+
+  /// The least way through the solid (m), infinite where there is no far side. What lies behind a solid
+  /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
+  /// neighbours across it are none.
+  virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
+  /// The least way through any part of the solid (m), thickness() included: no move may pass through it
+  /// unseen, though what lies behind does count.
+  virtual float thinnestPart() const { return thickness(); }
+  /// Whether the way from one point of the fluid to another passes through the solid; then the unit normal
+  /// where it enters, and how far along the way that is, in [0, 1]. Only for a solid with a finite
+  /// thinnestPart().
+  virtual bool crosses(const Vec3f& /*from*/, const Vec3f& /*to*/, Vec3f& /*normal*/,
+                       float& /*entry*/) const {
+    return false;
+  }
+
+  /// Whether the wall is made of planes, and how they combine.
+  virtual bool planar() const { return false; }
+  virtual PieceRule pieceRule() const { return PieceRule::fluidInsideAll; }
+  /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of
+  /// reach. A curved wall has one: the tangent plane at its nearest point.
+  virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const;
+
+  /// The finite extent, empty for a surface without one.
+  virtual Bounds bounds() const = 0;
+  /// Lines that show the wall; `scene` bounds what an infinite wall draws.
+  virtual void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const = 0;
+  /// The wall as a mesh to shade; empty where lines show it well enough.
+  virtual WallMesh mesh() const { return {}; }
+  /// Appends the balls that a SLIM surface is made of.
+  virtual void drawnNodes(std::vector<WallNode>&) const {}
+  /// Non-null for a box that holds the fluid.
+  virtual const BoxGeometry* tank() const { return nullptr; }
+};
+
+/// Names for the scene's "shape" key, in the order of makeSurface's index.
+std::span<const std::string_view> surfaceShapes();
+std::unique_ptr<Surface> makeSurface(int shape);
+
+// First hits of rays with one plane: what planes and the faces of boxes share.
+
+/// For an origin at `distance` (m) on the fluid side of a plane with the given unit normal into the fluid.
+inline void hitPlane(const Vec3f& normal, float distance, const Directions& directions,
+                     std::span<float> hits) {
+  const float nx = normal.x(), ny = normal.y(), nz = normal.z(), d = std::max(distance, 1e-9F);
+  const float *x = directions.x.data(), *y = directions.y.data(), *z = directions.z.data();
+  float* hit = hits.data();
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    // A ray that runs along the plane or away from it gets a hit beyond every reach, also from the plane
+    // itself.
+    const float towards = std::max(-(nx * x[k] + ny * y[k] + nz * z[k]), 1e-12F);
+    hit[k] = std::min(hit[k], d / towards);
+  }
+}
+
+}  // namespace migiwa
