@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "core/base/files.h"
 #include "core/scene/json.h"
-#include "core/scene/scene_file.h"
 
 namespace migiwa {
 
@@ -38,16 +36,12 @@ Link readLink(std::string_view text, const fs::path& file, FaultList& faults) {
   return {file, std::move(document.root)};
 }
 
-std::string pointerOf(std::string_view key) {
-  return childPointer("", key);
-}
-
 /// The file that a link includes, if any. The key is taken out.
 std::optional<fs::path> takeInclude(Link& link, FaultList& faults) {
-  const auto found = link.root.find(std::string(kIncludeKey));
+  const auto found = link.root.find(kIncludeKey);
   if (found == link.root.end()) return std::nullopt;
   if (!found->is_string() || found->get_ref<const std::string&>().empty())
-    refuse(faults, {link.file.string(), pointerOf(kIncludeKey)},
+    refuse(faults, {link.file.string(), childPointer("", kIncludeKey)},
            "expected the name of a scene file, found " + describeJson(*found));
   fs::path next = (link.file.parent_path() / found->get<std::string>()).lexically_normal();
   link.root.erase(found);
@@ -66,41 +60,85 @@ std::string cycleText(const std::vector<Link>& chain, std::size_t begin) {
   return text + chain[begin].file.string();
 }
 
-/// JSON Merge Patch (RFC 7396) of objects, noting where each value comes from.
-void mergeOver(Json& base, const Json& over, const std::string& pointer, const std::string& file,
-               Origins& origins) {
+/// Notes where each value comes from when `over` is merged over `base`.
+void noteOrigins(const Json& base, const Json& over, const std::string& pointer, const std::string& file,
+                 FaultList& faults) {
   for (const auto& item : over.items()) {
     const std::string place = childPointer(pointer, item.key());
-    const bool mergesInto = base.contains(item.key()) && base[item.key()].is_object();
-    if (!item.value().is_object() || !mergesInto) origins.add(place, {file, place});
-    if (item.value().is_null()) {
-      base.erase(item.key());
-    } else if (item.value().is_object()) {
-      if (!mergesInto) base[item.key()] = Json::object();
-      mergeOver(base[item.key()], item.value(), place, file, origins);
+    const auto under = base.find(item.key());
+    if (item.value().is_object() && under != base.end() && under->is_object()) {
+      noteOrigins(*under, item.value(), place, file, faults);
     } else {
-      base[item.key()] = item.value();
+      faults.addOrigin(place, {file, place});
     }
+  }
+}
+
+/// Whether there is a value at a pointer. The library throws where it cannot read an index.
+bool has(const Json& root, const Json::json_pointer& pointer) {
+  try {
+    return root.contains(pointer);
+  } catch (const Json::exception&) {
+    return false;
+  }
+}
+
+/// Sets the value at a pointer, which may have to be made: see applyOverrides(). `origin`: where it was
+/// written.
+void setValue(Json& root, const Json::json_pointer& pointer, Json value, const Origin& origin,
+              FaultList& faults) {
+  Json::json_pointer there = pointer;
+  std::vector<std::string> missing;  // the innermost first
+  for (; !has(root, there); there.pop_back()) missing.push_back(there.back());
+  Json& place = root[there];
+  const std::string shown = there.empty() ? "/" : there.to_string();
+  if (missing.empty()) {
+    Json& parent = root[there.parent_pointer()];
+    faults.addOrigin(there.to_string(), origin);
+    if (value.is_null() && parent.is_object()) {
+      parent.erase(there.back());
+    } else {
+      place = std::move(value);
+    }
+  } else if (place.is_array() && missing.size() == 1 && missing.back() == "-") {
+    faults.addOrigin((there / place.size()).to_string(), origin);
+    place.push_back(std::move(value));
+  } else if (place.is_array()) {
+    faults.addAt(origin, "expected the index of one of " + std::to_string(place.size()) + " entries at " +
+                             shown + ", found " + quotedText(missing.back()));
+  } else if (!place.is_object()) {
+    faults.addAt(origin, "expected an object or an array at " + shown + ", found " + describeJson(place));
+  } else {
+    Json* inner = &place;
+    for (; missing.size() > 1; missing.pop_back()) {
+      there /= missing.back();
+      inner = &((*inner)[missing.back()] = Json::object());
+      const std::string made = there.to_string();
+      faults.addOrigin(made,
+                       origin.file.empty() ? Origin{"", made} : Origin{origin.file, origin.pointer, true});
+    }
+    faults.addOrigin(pointer.to_string(), origin);
+    if (!value.is_null()) (*inner)[missing.back()] = std::move(value);
   }
 }
 
 /// Puts in what "set" names.
 void applySet(const Json& set, const std::string& file, Json& root, FaultList& faults) {
-  const std::string place = pointerOf(kSetKey);
+  const std::string place = childPointer("", kSetKey);
   if (!set.is_object()) {
     faults.addAt({file, place}, "expected an object of JSON pointers and values, found " + describeJson(set));
     return;
   }
   for (const auto& item : set.items()) {
     const Origin origin{file, childPointer(place, item.key())};
-    const auto tokens = pointerTokens(item.key());
-    if (!tokens) {
+    const std::optional<Json::json_pointer> pointer = parsePointer(item.key());
+    if (!pointer) {
       faults.addAt(origin,
                    "expected a JSON pointer such as \"/fluid/0/max\", found " + quotedText(item.key()));
-    } else if (tokens->front() == kIncludeKey || tokens->front() == kSetKey) {
+    } else if (const std::string key = tokensOf(*pointer).front(); key == kIncludeKey || key == kSetKey) {
       faults.addAt(origin, "expected a key of the scene, found one that is only read in a file itself");
     } else {
-      setValue(root, item.key(), item.value(), origin, faults);
+      setValue(root, *pointer, item.value(), origin, faults);
     }
   }
 }
@@ -110,7 +148,7 @@ std::vector<Link> readChain(std::string_view text, const fs::path& name, FaultLi
   std::vector<Link> chain;
   chain.push_back(readLink(text, name, faults));
   while (const std::optional<fs::path> next = takeInclude(chain.back(), faults)) {
-    const Origin origin{chain.back().file.string(), pointerOf(kIncludeKey)};
+    const Origin origin{chain.back().file.string(), childPointer("", kIncludeKey)};
     for (std::size_t k = 0; k < chain.size(); ++k)
       if (sameFile(chain[k].file, *next))
         refuse(faults, origin,
@@ -131,17 +169,18 @@ std::vector<Link> readChain(std::string_view text, const fs::path& name, FaultLi
 Json resolveIncludes(std::string_view text, const fs::path& name, FaultList& faults) {
   std::vector<Link> chain = readChain(text, name, faults);
   Json root = Json::object();
-  if (chain.size() > 1) faults.origins().add("", {chain.back().file.string(), ""});
+  if (chain.size() > 1) faults.addOrigin("", {chain.back().file.string(), ""});
   for (auto link = chain.rbegin(); link != chain.rend(); ++link) {
     Json set = Json::object();
-    if (const auto found = link->root.find(std::string(kSetKey)); found != link->root.end()) {
+    if (const auto found = link->root.find(kSetKey); found != link->root.end()) {
       set = std::move(*found);
       link->root.erase(found);
     }
     if (link == chain.rbegin()) {
       root = std::move(link->root);
     } else {
-      mergeOver(root, link->root, "", link->file.string(), faults.origins());
+      noteOrigins(root, link->root, "", link->file.string(), faults);
+      root.merge_patch(link->root);
     }
     applySet(set, link->file.string(), root, faults);
   }
@@ -169,14 +208,6 @@ std::vector<fs::path> filesOfScene(const fs::path& file) {
 
 namespace {
 
-std::optional<std::size_t> arrayIndex(const std::string& token) {
-  std::size_t index = 0;
-  const auto [end, code] = std::from_chars(token.data(), token.data() + token.size(), index);
-  if (code != std::errc() || end != token.data() + token.size()) return std::nullopt;
-  if (token.size() > 1 && token.front() == '0') return std::nullopt;
-  return index;
-}
-
 /// A JSON value, else a bare word. What begins like an object, an array or a quoted text has to be one:
 /// nothing if not.
 std::optional<Json> parseValue(const Override& override, FaultList& faults) {
@@ -198,82 +229,20 @@ std::optional<Json> parseValue(const Override& override, FaultList& faults) {
 
 }  // namespace
 
-std::optional<std::vector<std::string>> pointerTokens(std::string_view pointer) {
-  if (!pointer.starts_with('/')) return std::nullopt;
-  std::vector<std::string> result;
-  for (std::size_t k = 0; k < pointer.size(); ++k) {
-    if (pointer[k] == '/') {
-      result.emplace_back();
-    } else if (pointer[k] != '~') {
-      result.back() += pointer[k];
-    } else if (k + 1 < pointer.size() && (pointer[k + 1] == '0' || pointer[k + 1] == '1')) {
-      result.back() += pointer[++k] == '0' ? '~' : '/';
-    } else {
-      return std::nullopt;
-    }
-  }
-  return result;
-}
-
 Override Override::parse(std::string_view argument) {
   const std::size_t equals = argument.find('=');
   if (equals == std::string_view::npos || !argument.starts_with('/'))
     throw InputError("--set", "expected /json/pointer=VALUE, found " + quotedText(argument));
   const std::string_view pointer = argument.substr(0, equals);
-  if (!pointerTokens(pointer).has_value())
+  if (!parsePointer(pointer))
     throw InputError("--set", "expected ~0 for ~ and ~1 for / in a pointer, found " + quotedText(pointer));
   return {std::string(pointer), std::string(argument.substr(equals + 1))};
-}
-
-void setValue(Json& root, const std::string& pointer, Json value, const Origin& origin, FaultList& faults) {
-  const std::vector<std::string> tokens = pointerTokens(pointer).value_or(std::vector<std::string>());
-  Json* place = &root;
-  std::string reached;
-  for (std::size_t k = 0; k < tokens.size(); ++k) {
-    const std::string& token = tokens[k];
-    const bool last = k + 1 == tokens.size();
-    const std::string& shown = reached.empty() ? "/" : reached;
-    if (place->is_object()) {
-      if (last && value.is_null()) {
-        place->erase(token);
-        faults.origins().add(childPointer(reached, token), origin);
-        return;
-      }
-      // A new member is an object until the next token or the value says otherwise.
-      if (!place->contains(token)) {
-        (*place)[token] = Json::object();
-        const std::string made = childPointer(reached, token);
-        faults.origins().add(
-            made, origin.file.empty() ? Origin{"", made} : Origin{origin.file, origin.pointer, true});
-      }
-      place = &(*place)[token];
-      reached = childPointer(reached, token);
-    } else if (place->is_array()) {
-      std::optional<std::size_t> index = arrayIndex(token);
-      if (last && token == "-") {
-        index = place->size();
-        place->push_back(nullptr);
-      }
-      if (!index || *index >= place->size()) {
-        faults.addAt(origin, "expected the index of one of " + std::to_string(place->size()) +
-                                 " entries at " + shown + ", found " + quotedText(token));
-        return;
-      }
-      place = &(*place)[*index];
-      reached = childPointer(reached, *index);
-    } else {
-      faults.addAt(origin, "expected an object or an array at " + shown + ", found " + describeJson(*place));
-      return;
-    }
-  }
-  *place = std::move(value);
-  faults.origins().add(reached, origin);
 }
 
 void applyOverrides(const std::vector<Override>& overrides, Json& root, FaultList& faults) {
   for (const Override& override : overrides)
     if (std::optional<Json> value = parseValue(override, faults))
-      setValue(root, override.pointer, *std::move(value), {"", override.pointer}, faults);
+      setValue(root, Json::json_pointer(override.pointer), *std::move(value), {"", override.pointer}, faults);
 }
 
 }  // namespace migiwa

@@ -1,10 +1,9 @@
-// What only core/scene and core/io know of JSON: documents, the faults of their texts with where they come
-// from, readers and writers of fields, includes and overrides.
+// What only the rim knows of JSON: documents, the faults of their texts with where they come from, includes
+// and overrides.
 #pragma once
 
 #include <filesystem>
-#include <set>
-#include <span>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +38,13 @@ JsonDocument parseJson(std::string_view text);
 std::string childPointer(std::string_view pointer, std::string_view key);
 std::string childPointer(std::string_view pointer, std::size_t index);
 
+/// Nothing if the text does not begin with '/' or an escape is wrong.
+std::optional<Json::json_pointer> parsePointer(std::string_view text);
+std::vector<std::string> tokensOf(Json::json_pointer pointer);
+
+/// Where a value begins in a text that is JSON, or its key, or as much of the way as there is.
+std::size_t offsetOf(std::string_view text, const Json::json_pointer& pointer);
+
 /// What a value is, for "found ...": numbers and short texts themselves, else the kind with its size.
 std::string describeJson(const Json& value);
 
@@ -51,9 +57,6 @@ std::string prettyJson(const Json& value);
 // Where each value of a scene was written. A scene is put together from a file, the files that it includes,
 // their "set" and the options --set; a fault has to name the one that a person has to change.
 
-/// Whether `pointer` is `ancestor` or lies below it.
-bool isBelow(std::string_view pointer, std::string_view ancestor);
-
 /// The place of a value.
 struct Origin {
   std::string file;     ///< as it was named; empty for the option --set
@@ -64,36 +67,12 @@ struct Origin {
   std::string text() const;
 };
 
-class Origins {
- public:
-  /// All values were written in `file`, at the pointer that they have.
-  explicit Origins(std::string file);
-
-  /// The value at `pointer` of the whole scene, and all below it, now comes from `origin`.
-  void add(std::string pointer, Origin origin);
-  /// Of the value at `pointer`, which need not exist: then of the object that lacks it.
-  Origin of(std::string_view pointer) const;
-  /// Where relative file names begin that were written at `pointer`: the folder of the file that holds them.
-  /// What an option names is relative to the scene itself.
-  std::filesystem::path folder(std::string_view pointer) const;
-  /// The folder of the scene itself.
-  std::filesystem::path sceneFolder() const;
-
- private:
-  struct Part {
-    std::string pointer;
-    Origin origin;
-  };
-
-  std::string file_;
-  std::vector<Part> parts_;  ///< in the order in which they were put over each other
-};
-
 // Faults of one scene while it is read: JSON pointers in, places that the user wrote out.
 
 class FaultList {
  public:
-  explicit FaultList(std::string file) : origins_(std::move(file)) {}
+  /// All values were written in `file`, at the pointer that they have.
+  explicit FaultList(std::string file);
 
   /// At the value that has this pointer in the whole scene.
   void add(std::string_view pointer, std::string message);
@@ -112,95 +91,29 @@ class FaultList {
   void noteFile(std::filesystem::path file) { files_.push_back(std::move(file)); }
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
-  Origins& origins() { return origins_; }
-  const Origins& origins() const { return origins_; }
+  /// The value at `pointer` of the whole scene, and all below it, now comes from `origin`.
+  void addOrigin(std::string pointer, Origin origin);
+  /// Where relative file names begin that were written at `pointer`: the folder of the file that holds them.
+  /// What an option names is relative to the scene itself.
+  std::filesystem::path folder(std::string_view pointer) const;
+  /// The folder of the scene itself.
+  std::filesystem::path sceneFolder() const;
 
  private:
-  Origins origins_;
+  struct Part {
+    std::string pointer;
+    Origin origin;
+  };
+
+  /// Of the value at `pointer`, which need not exist: then of the object that lacks it.
+  Origin originOf(std::string_view pointer) const;
+
+  std::string file_;
+  std::vector<Part> parts_;  ///< in the order in which they were put over each other
   std::vector<std::string> pointers_;
   std::vector<Fault> faults_;
   std::vector<std::string> warnings_;
   std::vector<std::filesystem::path> files_;
-};
-
-// Reads the fields of one JSON object, and of the objects in it, into the structs that visit them. Every
-// fault is collected; a faulty value leaves the default in place. Keys that nobody asked for are faults.
-
-class JsonReader final : public FieldVisitor {
- public:
-  /// Reads `object` (which must be one), found at `pointer`, through `fields`, then looks for unknown keys.
-  static void read(const Json& object, const std::string& pointer, FaultList& faults, const Fields& fields);
-
-  void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) override;
-  void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) override;
-  void boolean(std::string_view key, bool& value, const FieldDoc& doc) override;
-  void text(std::string_view key, std::string& value, const FieldDoc& doc) override;
-  void file(std::string_view key, FileName& value, const FieldDoc& doc) override;
-  void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override;
-  void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
-               const FieldDoc& doc) override;
-  void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc, bool* present) override;
-  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
-              const FieldDoc& doc) override;
-  void object(std::string_view key, const FieldDoc& doc, const Fields& fields, bool* present) override;
-  void list(std::string_view key, std::size_t size, const FieldDoc& doc,
-            const std::function<void(FieldVisitor&, std::size_t)>& element) override;
-  void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc& doc,
-               const std::function<void(FieldVisitor&, int)>& fields) override;
-  void fault(std::string_view key, std::string_view message) override;
-  void warning(std::string_view key, std::string_view message) override;
-  bool valid(std::initializer_list<std::string_view> keys) const override;
-
- private:
-  JsonReader(const Json& object, const std::string& pointer, FaultList& faults);
-
-  /// The value of a key, or null when it is absent: then a fault that says `expected`, if the key is
-  /// required.
-  const Json* find(std::string_view key, const FieldDoc& doc, const std::string& expected);
-  void wrong(std::string_view key, const std::string& expected, const std::string& found);
-  bool numbers(std::string_view key, const FieldDoc& doc, std::size_t size, double* values);
-  void reportUnknownKeys();
-
-  const Json& object_;
-  const std::string& pointer_;
-  FaultList& faults_;
-  std::vector<std::string_view> known_;
-  std::set<std::string, std::less<>> faulty_;
-  bool openEnded_ = false;  ///< the deciding key of a variant is wrong: nobody knows which keys belong here
-};
-
-// Writes what structs visit into a JSON object: every key, with the value in force. An empty text is left
-// out, it says nothing.
-
-class JsonWriter final : public FieldWriter {
- public:
-  /// What stands for a file that a scene names.
-  using FileEntry = std::function<Json(const FileName&)>;
-
-  static Json write(const Fields& fields, const FileEntry& fileEntry = {});
-
-  void number(std::string_view key, const double& value, const Range& range, const FieldDoc& doc) override;
-  void integer(std::string_view key, const int& value, const Range& range, const FieldDoc& doc) override;
-  void boolean(std::string_view key, const bool& value, const FieldDoc& doc) override;
-  void text(std::string_view key, const std::string& value, const FieldDoc& doc) override;
-  void file(std::string_view key, const FileName& value, const FieldDoc& doc) override;
-  void vector(std::string_view key, const Vec3d& value, const FieldDoc& doc) override;
-  void triples(std::string_view key, const std::vector<std::array<double, 3>>& values,
-               const FieldDoc& doc) override;
-  void pair(std::string_view key, const std::array<double, 2>& value, const FieldDoc& doc,
-            const bool* present) override;
-  void choice(std::string_view key, const int& index, std::span<const std::string_view> names,
-              const FieldDoc& doc) override;
-  void object(std::string_view key, const FieldDoc& doc, const Fields& fields, const bool* present) override;
-  void list(std::string_view key, std::size_t size, const FieldDoc& doc, const Element& element) override;
-  void variant(std::string_view key, const int& index, std::span<const std::string_view> names,
-               const FieldDoc& doc, const Variant& fields) override;
-
- private:
-  void put(std::string_view key, Json value);
-
-  Json object_ = Json::object();
-  FileEntry fileEntry_;
 };
 
 // What makes a scene the scene that it is for a simulation: two runs of scenes with the same identity are
@@ -237,18 +150,9 @@ inline constexpr FieldDoc kSetDoc{
 /// added.
 Json resolveIncludes(std::string_view text, const std::filesystem::path& name, FaultList& faults);
 
-// Values put into a scene's document by JSON pointer before it is read: `--set /json/pointer=VALUE`, and the
-// same under "set" in a scene file.
-
-/// The tokens of a JSON pointer (RFC 6901); nothing if it does not begin with '/' or an escape is wrong.
-std::optional<std::vector<std::string>> pointerTokens(std::string_view pointer);
-
-/// Sets one value. Objects on the way that are missing are made, entries of arrays are not; the last token
-/// "-" adds an entry to an array, and null takes a member out of its object. `origin`: where the value was
-/// written.
-void setValue(Json& root, const std::string& pointer, Json value, const Origin& origin, FaultList& faults);
-
-/// Sets the values in order.
+/// Puts values in by JSON pointer, in order, as `--set /json/pointer=VALUE` and "set" in a scene file do:
+/// objects on the way that are missing are made, entries of arrays are not; the last token "-" adds an entry
+/// to an array, and null takes a member out of its object.
 void applyOverrides(const std::vector<Override>& overrides, Json& root, FaultList& faults);
 
 }  // namespace migiwa

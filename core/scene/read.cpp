@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
 #include <sstream>
 
 #include "core/base/files.h"
@@ -36,246 +38,225 @@ std::string didYouMean(std::string_view word, std::span<const std::string_view> 
   return "; did you mean \"" + std::string(nearest) + "\"?";
 }
 
-}  // namespace
-
-JsonReader::JsonReader(const Json& object, const std::string& pointer, FaultList& faults)
-    : object_(object), pointer_(pointer), faults_(faults) {}
-
-void JsonReader::read(const Json& object, const std::string& pointer, FaultList& faults,
-                      const Fields& fields) {
-  JsonReader reader(object, pointer, faults);
-  fields(reader);
-  reader.reportUnknownKeys();
+std::string child(const std::string& pointer, std::string_view key) {
+  return key.empty() ? pointer : childPointer(pointer, key);
 }
 
-const Json* JsonReader::find(std::string_view key, const FieldDoc& doc, const std::string& expected) {
-  known_.push_back(key);
-  const auto found = object_.find(std::string(key));
-  if (found != object_.end()) return &*found;
-  if (doc.presence == Presence::required) {
-    wrong(key, expected, "nothing; the key is required");
+/// Reads the fields of one JSON object, and of the objects in it, into the structs that visit them. Every
+/// fault is collected; a faulty value leaves the default in place. Keys that nobody asked for are faults.
+class JsonReader final : public FieldVisitor {
+ public:
+  /// Reads `object` (which must be one), found at `pointer`, through `fields`, then looks for unknown keys.
+  static void read(const Json& object, const std::string& pointer, FaultList& faults, const Fields& fields) {
+    JsonReader reader(object, pointer, faults);
+    fields(reader);
+    reader.reportUnknownKeys();
   }
-  return nullptr;
-}
 
-void JsonReader::wrong(std::string_view key, const std::string& expected, const std::string& found) {
-  faults_.add(childPointer(pointer_, key), "expected " + expected + ", found " + found);
-  faulty_.emplace(key);
-}
-
-void JsonReader::number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) {
-  const std::string expected = expectedNumber("a number", range, doc);
-  const Json* const found = find(key, doc, expected);
-  if (found == nullptr) return;
-  const double read = found->is_number() ? found->get<double>() : 0;
-  if (found->is_number() && std::isfinite(read) && range.contains(read)) {
-    value = read;
-  } else {
-    wrong(key, expected, describeJson(*found));
+  void number(std::string_view key, double& value, const Range& range, const FieldDoc& doc) override {
+    const auto fits = [&](const Json& found) {
+      return found.is_number() && std::isfinite(found.get<double>()) && range.contains(found.get<double>());
+    };
+    if (const Json* found = take(key, doc, expectedNumber("a number", range, doc), fits))
+      value = found->get<double>();
   }
-}
 
-void JsonReader::integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) {
-  const std::string expected = expectedNumber("a whole number", range, doc);
-  const Json* const found = find(key, doc, expected);
-  if (found == nullptr) return;
-  const double read = found->is_number() ? found->get<double>() : 0;
-  const bool fits = std::abs(read) <= std::numeric_limits<int>::max() && std::floor(read) == read;
-  if (found->is_number() && fits && range.contains(read)) {
-    value = static_cast<int>(read);
-  } else {
-    wrong(key, expected, describeJson(*found));
+  void integer(std::string_view key, int& value, const Range& range, const FieldDoc& doc) override {
+    const auto fits = [&](const Json& found) {
+      const double read = found.is_number() ? found.get<double>() : 0.5;
+      return std::abs(read) <= std::numeric_limits<int>::max() && std::floor(read) == read &&
+             range.contains(read);
+    };
+    if (const Json* found = take(key, doc, expectedNumber("a whole number", range, doc), fits))
+      value = static_cast<int>(found->get<double>());
   }
-}
 
-void JsonReader::boolean(std::string_view key, bool& value, const FieldDoc& doc) {
-  const Json* const found = find(key, doc, "true or false");
-  if (found == nullptr) return;
-  if (found->is_boolean()) {
-    value = found->get<bool>();
-  } else {
-    wrong(key, "true or false", describeJson(*found));
+  void boolean(std::string_view key, bool& value, const FieldDoc& doc) override {
+    if (const Json* found = take(key, doc, "true or false", std::mem_fn(&Json::is_boolean)))
+      value = found->get<bool>();
   }
-}
 
-void JsonReader::text(std::string_view key, std::string& value, const FieldDoc& doc) {
-  const Json* const found = find(key, doc, "a text");
-  if (found == nullptr) return;
-  if (found->is_string()) {
-    value = found->get<std::string>();
-  } else {
-    wrong(key, "a text", describeJson(*found));
+  void text(std::string_view key, std::string& value, const FieldDoc& doc) override {
+    if (const Json* found = take(key, doc, "a text", std::mem_fn(&Json::is_string)))
+      value = found->get<std::string>();
   }
-}
 
-void JsonReader::file(std::string_view key, FileName& value, const FieldDoc& doc) {
-  text(key, value.written, doc);
-  value.path.clear();
-  value.identity = {};
-  const bool given = object_.contains(std::string(key)) && valid({key});
-  if (given && value.empty()) wrong(key, "a file name", "\"\"");
-  if (value.empty()) return;
-  const Origins& origins = faults_.origins();
-  const std::filesystem::path folder = origins.folder(childPointer(pointer_, key));
-  value.path = folder / value.written;
-  const std::vector<std::filesystem::path> files = filesOfShape(value.path);
-  for (const std::filesystem::path& file : files) faults_.noteFile(file);
-  value.identity = identityOf(files);
-  // An included scene may lie elsewhere: written again, the name has to hold from the scene itself.
-  if (folder != origins.sceneFolder() && std::filesystem::path(value.written).is_relative())
-    value.written = value.path.lexically_proximate(origins.sceneFolder()).generic_string();
-}
-
-bool JsonReader::numbers(std::string_view key, const FieldDoc& doc, std::size_t size, double* values) {
-  const std::string expected = withUnit("an array of " + std::to_string(size) + " numbers", doc);
-  const Json* const found = find(key, doc, expected);
-  if (found == nullptr) return false;
-  if (!found->is_array() || found->size() != size) {
-    wrong(key, expected, describeJson(*found));
-    return false;
+  void file(std::string_view key, FileName& value, const FieldDoc& doc) override {
+    text(key, value.written, doc);
+    value.path.clear();
+    value.identity = {};
+    const bool given = object_.contains(key) && valid({key});
+    if (given && value.empty()) wrong(key, "a file name", "\"\"");
+    if (value.empty()) return;
+    const std::filesystem::path folder = faults_.folder(childPointer(pointer_, key));
+    value.path = folder / value.written;
+    const std::vector<std::filesystem::path> files = filesOfShape(value.path);
+    for (const std::filesystem::path& file : files) faults_.noteFile(file);
+    value.identity = identityOf(files);
+    // An included scene may lie elsewhere: written again, the name has to hold from the scene itself.
+    if (folder != faults_.sceneFolder() && std::filesystem::path(value.written).is_relative())
+      value.written = value.path.lexically_proximate(faults_.sceneFolder()).generic_string();
   }
-  std::vector<double> read(size);
-  const std::size_t before = faults_.size();
-  for (std::size_t k = 0; k < size; ++k) {
-    const Json& entry = (*found)[k];
-    if (entry.is_number()) read[k] = entry.get<double>();
-    if (entry.is_number() && kCoordinateRange.contains(read[k])) continue;
-    faults_.add(
-        childPointer(childPointer(pointer_, key), k),
-        "expected " + expectedNumber("a number", kCoordinateRange, doc) + ", found " + describeJson(entry));
+
+  void vector(std::string_view key, Vec3d& value, const FieldDoc& doc) override {
+    numbers(key, doc, {value.data(), 3});
   }
-  if (faults_.size() > before) {
-    faulty_.emplace(key);
-    return false;
+
+  void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc, bool* present) override {
+    const bool read = numbers(key, doc, value);
+    if (present != nullptr) *present = read;
   }
-  std::copy(read.begin(), read.end(), values);
-  return true;
-}
 
-void JsonReader::vector(std::string_view key, Vec3d& value, const FieldDoc& doc) {
-  numbers(key, doc, 3, value.data());
-}
-
-void JsonReader::pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc,
-                      bool* present) {
-  const bool read = numbers(key, doc, 2, value.data());
-  if (present != nullptr) *present = read;
-}
-
-void JsonReader::triples(std::string_view key, std::vector<std::array<double, 3>>& values,
-                         const FieldDoc& doc) {
-  const std::string expected = "an array of arrays of 3 numbers";
-  const Json* const found = find(key, doc, expected);
-  if (found == nullptr) return;
-  if (!found->is_array()) return wrong(key, expected, describeJson(*found));
-  std::vector<std::array<double, 3>> read;
-  for (std::size_t k = 0; k < found->size(); ++k) {
-    const Json& entry = (*found)[k];
-    const bool valid = entry.is_array() && entry.size() == 3 &&
-                       std::all_of(entry.begin(), entry.end(), [](const Json& number) {
-                         return number.is_number() && std::isfinite(number.get<double>());
-                       });
-    if (valid) {
-      read.push_back({entry[0].get<double>(), entry[1].get<double>(), entry[2].get<double>()});
-    } else {
-      faults_.add(childPointer(childPointer(pointer_, key), k),
-                  "expected an array of 3 numbers, found " + describeJson(entry));
-      faulty_.emplace(key);
+  void triples(std::string_view key, std::vector<std::array<double, 3>>& values,
+               const FieldDoc& doc) override {
+    const Json* const found = take(key, doc, "an array of arrays of 3 numbers", std::mem_fn(&Json::is_array));
+    if (found == nullptr) return;
+    std::vector<std::array<double, 3>> read;
+    for (std::size_t k = 0; k < found->size(); ++k) {
+      const Json& entry = (*found)[k];
+      const bool valid = entry.is_array() && entry.size() == 3 &&
+                         std::all_of(entry.begin(), entry.end(), [](const Json& number) {
+                           return number.is_number() && std::isfinite(number.get<double>());
+                         });
+      if (valid) {
+        read.push_back(entry.get<std::array<double, 3>>());
+      } else {
+        wrongEntry(key, k, "an array of 3 numbers", entry);
+      }
     }
+    if (valid({key})) values = std::move(read);
   }
-  if (!faulty_.contains(key)) values = std::move(read);
-}
 
-void JsonReader::choice(std::string_view key, int& index, std::span<const std::string_view> names,
-                        const FieldDoc& doc) {
-  const std::string expected = (names.size() == 1   ? ""
-                                : names.size() == 2 ? "either of "
-                                                    : "one of ") +
-                               quotedList(names);
-  const Json* const found = find(key, doc, expected);
-  if (found == nullptr) return;
-  const auto name = found->is_string()
-                        ? std::find(names.begin(), names.end(), found->get_ref<const std::string&>())
-                        : names.end();
-  if (name != names.end()) {
+  void choice(std::string_view key, int& index, std::span<const std::string_view> names,
+              const FieldDoc& doc) override {
+    const std::string expected = (names.size() == 1   ? ""
+                                  : names.size() == 2 ? "either of "
+                                                      : "one of ") +
+                                 quotedList(names);
+    const Json* const found = find(key, doc, expected);
+    if (found == nullptr) return;
+    if (!found->is_string()) return wrong(key, expected, describeJson(*found));
+    const auto& word = found->get_ref<const std::string&>();
+    const auto name = std::find(names.begin(), names.end(), word);
+    if (name == names.end()) return wrong(key, expected, quotedText(word) + didYouMean(word, names, ""));
     index = static_cast<int>(name - names.begin());
-    return;
   }
-  const std::string hint =
-      found->is_string() ? didYouMean(found->get_ref<const std::string&>(), names, "") : std::string();
-  wrong(key, expected, describeJson(*found) + hint);
-}
 
-void JsonReader::object(std::string_view key, const FieldDoc& doc, const Fields& fields, bool* present) {
-  const Json* const found = find(key, doc, "an object");
-  if (present != nullptr) *present = found != nullptr;
-  if (found == nullptr) return;
-  if (!found->is_object()) {
-    wrong(key, "an object", describeJson(*found));
-    return;
+  void object(std::string_view key, const FieldDoc& doc, const Fields& fields, bool* present) override {
+    if (present != nullptr) *present = object_.contains(key);
+    const Json* const found = take(key, doc, "an object", std::mem_fn(&Json::is_object));
+    if (found == nullptr) return;
+    const std::size_t before = faults_.size();
+    read(*found, childPointer(pointer_, key), faults_, fields);
+    if (faults_.size() > before) faulty_.emplace(key);
   }
-  const std::size_t before = faults_.size();
-  read(*found, childPointer(pointer_, key), faults_, fields);
-  if (faults_.size() > before) faulty_.emplace(key);
-}
 
-void JsonReader::list(std::string_view key, std::size_t, const FieldDoc& doc,
-                      const std::function<void(FieldVisitor&, std::size_t)>& element) {
-  const Json* const found = find(key, doc, "an array of objects");
-  if (found == nullptr) return;
-  if (!found->is_array()) {
-    wrong(key, "an array of objects", describeJson(*found));
-    return;
+  void list(std::string_view key, std::size_t, const FieldDoc& doc, const Element& element) override {
+    const Json* const found = take(key, doc, "an array of objects", std::mem_fn(&Json::is_array));
+    if (found == nullptr) return;
+    const std::size_t before = faults_.size();
+    for (std::size_t k = 0; k < found->size(); ++k) {
+      const Json& entry = (*found)[k];
+      if (entry.is_object()) {
+        read(entry, childPointer(childPointer(pointer_, key), k), faults_,
+             [&](FieldVisitor& fields) { element(fields, k); });
+      } else {
+        wrongEntry(key, k, "an object", entry);
+      }
+    }
+    if (faults_.size() > before) faulty_.emplace(key);
   }
-  const std::size_t before = faults_.size();
-  const std::string pointer = childPointer(pointer_, key);
-  for (std::size_t k = 0; k < found->size(); ++k) {
-    const std::string place = childPointer(pointer, k);
-    if ((*found)[k].is_object()) {
-      read((*found)[k], place, faults_, [&](FieldVisitor& fields) { element(fields, k); });
-    } else {
-      faults_.add(place, "expected an object, found " + describeJson((*found)[k]));
+
+  void variant(std::string_view key, int& index, std::span<const std::string_view> names, const FieldDoc& doc,
+               const Variant& fields) override {
+    index = -1;
+    choice(key, index, names, doc);
+    openEnded_ = openEnded_ || index < 0;
+    if (index >= 0) fields(*this, index);
+  }
+
+  void fault(std::string_view key, std::string_view message) override {
+    if (!valid({key})) return;
+    faults_.add(child(pointer_, key), std::string(message));
+    if (!key.empty()) faulty_.emplace(key);
+  }
+
+  void warning(std::string_view key, std::string_view message) override {
+    faults_.warn(child(pointer_, key), message);
+  }
+
+  bool valid(std::initializer_list<std::string_view> keys) const override {
+    return std::none_of(keys.begin(), keys.end(),
+                        [&](std::string_view key) { return faulty_.contains(key); });
+  }
+
+ private:
+  JsonReader(const Json& object, const std::string& pointer, FaultList& faults)
+      : object_(object), pointer_(pointer), faults_(faults) {}
+
+  /// The value of a key, or null when it is absent: then a fault that says `expected`, if the key is
+  /// required.
+  const Json* find(std::string_view key, const FieldDoc& doc, const std::string& expected) {
+    known_.push_back(key);
+    const auto found = object_.find(key);
+    if (found != object_.end()) return &*found;
+    if (doc.presence == Presence::required) wrong(key, expected, "nothing; the key is required");
+    return nullptr;
+  }
+
+  /// The same, and a fault and null for a value that does not fit.
+  template <class Fits>
+  const Json* take(std::string_view key, const FieldDoc& doc, const std::string& expected, const Fits& fits) {
+    const Json* const found = find(key, doc, expected);
+    if (found == nullptr || fits(*found)) return found;
+    wrong(key, expected, describeJson(*found));
+    return nullptr;
+  }
+
+  void wrong(std::string_view key, const std::string& expected, const std::string& found) {
+    faults_.add(childPointer(pointer_, key), "expected " + expected + ", found " + found);
+    faulty_.emplace(key);
+  }
+
+  void wrongEntry(std::string_view key, std::size_t index, const std::string& expected, const Json& found) {
+    faults_.add(childPointer(childPointer(pointer_, key), index),
+                "expected " + expected + ", found " + describeJson(found));
+    faulty_.emplace(key);
+  }
+
+  /// Reads as many numbers as there is room for; nothing changes, and false, where one of them is wrong.
+  bool numbers(std::string_view key, const FieldDoc& doc, std::span<double> values) {
+    const std::string expected = withUnit("an array of " + std::to_string(values.size()) + " numbers", doc);
+    const auto fits = [&](const Json& found) { return found.is_array() && found.size() == values.size(); };
+    const Json* const found = take(key, doc, expected, fits);
+    if (found == nullptr) return false;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const Json& entry = (*found)[k];
+      if (!entry.is_number() || !kCoordinateRange.contains(entry.get<double>()))
+        wrongEntry(key, k, expectedNumber("a number", kCoordinateRange, doc), entry);
+    }
+    if (!valid({key})) return false;
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = (*found)[k].get<double>();
+    return true;
+  }
+
+  void reportUnknownKeys() {
+    if (openEnded_) return;
+    for (const auto& item : object_.items()) {
+      if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+      faults_.add(childPointer(pointer_, item.key()),
+                  "expected a known key, found " + quotedText(item.key()) +
+                      didYouMean(item.key(), known_, "; known here: " + quotedList(known_)));
     }
   }
-  if (faults_.size() > before) faulty_.emplace(key);
-}
 
-void JsonReader::variant(std::string_view key, int& index, std::span<const std::string_view> names,
-                         const FieldDoc& doc, const std::function<void(FieldVisitor&, int)>& fields) {
-  index = -1;
-  choice(key, index, names, doc);
-  if (index >= 0) {
-    fields(*this, index);
-  } else {
-    openEnded_ = true;
-  }
-}
-
-void JsonReader::fault(std::string_view key, std::string_view message) {
-  if (faulty_.contains(key)) return;
-  faults_.add(key.empty() ? pointer_ : childPointer(pointer_, key), std::string(message));
-  if (!key.empty()) faulty_.emplace(key);
-}
-
-void JsonReader::warning(std::string_view key, std::string_view message) {
-  faults_.warn(key.empty() ? pointer_ : childPointer(pointer_, key), message);
-}
-
-bool JsonReader::valid(std::initializer_list<std::string_view> keys) const {
-  return std::none_of(keys.begin(), keys.end(), [&](std::string_view key) { return faulty_.contains(key); });
-}
-
-void JsonReader::reportUnknownKeys() {
-  if (openEnded_) return;
-  for (const auto& item : object_.items()) {
-    if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
-    faults_.add(childPointer(pointer_, item.key()),
-                "expected a known key, found " + quotedText(item.key()) +
-                    didYouMean(item.key(), known_, "; known here: " + quotedList(known_)));
-  }
-}
-
-namespace {
+  const Json& object_;
+  const std::string& pointer_;
+  FaultList& faults_;
+  std::vector<std::string_view> known_;
+  std::set<std::string, std::less<>> faulty_;
+  bool openEnded_ = false;  ///< the deciding key of a variant is wrong: nobody knows which keys belong here
+};
 
 constexpr std::string_view kSpacing = "/particle_spacing";
 
@@ -328,17 +309,6 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
   scene.warnings = faults.warnings();
   if (scene.name.empty()) scene.name = scene.stem();
   return scene;
-}
-
-std::vector<std::filesystem::path> filesNamedBy(const Scene& scene) {
-  std::vector<std::filesystem::path> files;
-  JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); },
-                    [&](const FileName& name) {
-                      for (std::filesystem::path& file : filesOfShape(name.path))
-                        files.push_back(std::move(file));
-                      return Json(name.written);
-                    });
-  return files;
 }
 
 Scene readScene(const std::filesystem::path& file, const std::vector<Override>& overrides) {
