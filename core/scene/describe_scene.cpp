@@ -36,38 +36,26 @@ struct Shapes {
 
 /// A list of objects whose "shape" says what they are: each is described by its shape, by `more` and, after
 /// the keys that depend on the shape, by `common`. What is read is added to `objects`.
-template <class T, class More, class Common>
-void describeShapes(FieldVisitor& visitor, std::string_view key, const FieldDoc& doc,
-                    std::vector<std::shared_ptr<const T>>& objects, const Shapes<T>& shapes, const More& more,
-                    const Common& common) {
-  visitor.list(key, objects.size(), doc, [&](FieldVisitor& element, std::size_t) {
-    int shape = -1;
-    std::shared_ptr<T> made;
-    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](FieldVisitor& fields, int picked) {
-      made = shapes.makeOne(picked);
-      made->describe(fields);
-      more(fields, *made);
-    });
-    if (made == nullptr) return;
-    common(element, *made);
-    objects.push_back(std::move(made));
-  });
-}
-
-/// The same for objects that are written.
-template <class T, class More, class Common>
-void describeShapes(FieldWriter& visitor, std::string_view key, const FieldDoc& doc,
-                    const std::vector<std::shared_ptr<const T>>& objects, const Shapes<T>& shapes,
+template <class T, class Visitor, class More, class Common>
+void describeShapes(Visitor& visitor, std::string_view key, const FieldDoc& doc,
+                    Visited<Visitor, std::vector<std::shared_ptr<const T>>>& objects, const Shapes<T>& shapes,
                     const More& more, const Common& common) {
-  visitor.list(key, objects.size(), doc, [&](FieldWriter& element, std::size_t at) {
-    const T& object = *objects[at];
-    const int shape = shapeOf(object, shapes.names, shapes.makeOne);
-    if (shape < 0) return;  // not one that a scene can name
-    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](FieldWriter& fields, int) {
-      object.describe(fields);
-      more(fields, object);
+  visitor.list(key, objects.size(), doc, [&](Visitor& element, std::size_t at) {
+    std::shared_ptr<Visited<Visitor, T>> object;
+    int shape = -1;
+    if constexpr (!Visitor::kChanges) {
+      object = objects[at];
+      shape = shapeOf(*object, shapes.names, shapes.makeOne);
+      if (shape < 0) return;  // not one that a scene can name
+    }
+    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](Visitor& fields, int picked) {
+      if constexpr (Visitor::kChanges) object = shapes.makeOne(picked);
+      object->describe(fields);
+      more(fields, *object);
     });
-    common(element, object);
+    if (object == nullptr) return;
+    common(element, *object);
+    if constexpr (Visitor::kChanges) objects.push_back(std::move(object));
   });
 }
 
@@ -192,28 +180,23 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
 /// Each effect is an object of its own key, and runs when the key is there.
 constexpr FieldDoc kEffectDoc{"", "An effect; {} runs it with its defaults."};
 
-void describeEffects(FieldVisitor& visitor, std::vector<NamedEffect>& effects) {
+template <class Visitor>
+void describeEffects(Visitor& visitor, Visited<Visitor, std::vector<NamedEffect>>& effects) {
   const auto names = effectNames();
   for (std::size_t at = 0; at < names.size(); ++at) {
-    bool present = false;
-    visitor.object(
-        names[at], kEffectDoc,
-        [&](FieldVisitor& fields) {
-          std::shared_ptr<Effect> made = makeEffect(static_cast<int>(at));
-          made->describe(fields);
-          effects.push_back({std::string(names[at]), std::move(made)});
-        },
-        &present);
-  }
-}
-
-void describeEffects(FieldWriter& visitor, const std::vector<NamedEffect>& effects) {
-  for (const std::string_view name : effectNames()) {
     const auto known = std::find_if(effects.begin(), effects.end(),
-                                    [&](const NamedEffect& effect) { return effect.name == name; });
-    const bool present = known != effects.end();
-    visitor.object(
-        name, kEffectDoc, [&](FieldWriter& fields) { known->effect->describe(fields); }, &present);
+                                    [&](const NamedEffect& effect) { return effect.name == names[at]; });
+    bool present = known != effects.end();
+    const auto fields = [&](Visitor& effect) {
+      if constexpr (Visitor::kChanges) {
+        std::shared_ptr<Effect> made = makeEffect(static_cast<int>(at));
+        made->describe(effect);
+        effects.push_back({std::string(names[at]), std::move(made)});
+      } else {
+        known->effect->describe(effect);
+      }
+    };
+    visitor.object(names[at], kEffectDoc, fields, &present);
   }
 }
 

@@ -21,7 +21,7 @@ struct Link {
   throw InputError(faults.faults());
 }
 
-Link readLink(std::string_view text, const fs::path& file, FaultList& faults) {
+Json readRoot(std::string_view text, const fs::path& file, FaultList& faults) {
   JsonDocument document = parseJson(text);
   if (document.broken) {
     std::vector<Fault> all = faults.faults();
@@ -33,7 +33,7 @@ Link readLink(std::string_view text, const fs::path& file, FaultList& faults) {
     faults.addAt({file.string(), fault.pointer}, std::move(fault.message));
   if (!document.root.is_object())
     refuse(faults, {file.string(), ""}, "expected an object, found " + describeJson(document.root));
-  return {file, std::move(document.root)};
+  return std::move(document.root);
 }
 
 /// The file that a link includes, if any. The key is taken out.
@@ -143,31 +143,33 @@ void applySet(const Json& set, const std::string& file, Json& root, FaultList& f
   }
 }
 
-/// The chain from the outermost file to the one that includes nothing.
-std::vector<Link> readChain(std::string_view text, const fs::path& name, FaultList& faults) {
-  std::vector<Link> chain;
-  chain.push_back(readLink(text, name, faults));
+/// The chain from the outermost file to the one that includes nothing. When this throws, `chain` ends with
+/// the file that cannot be had.
+void readChain(std::string_view text, const fs::path& name, std::vector<Link>& chain, FaultList& faults) {
+  chain.push_back({name, {}});
+  chain.back().root = readRoot(text, name, faults);
   while (const std::optional<fs::path> next = takeInclude(chain.back(), faults)) {
     const Origin origin{chain.back().file.string(), childPointer("", kIncludeKey)};
     for (std::size_t k = 0; k < chain.size(); ++k)
       if (sameFile(chain[k].file, *next))
         refuse(faults, origin,
                "expected a scene that does not include itself, found a cycle: " + cycleText(chain, k));
+    chain.push_back({*next, {}});
     std::string included;
     try {
       included = readTextFile(*next, "a scene file");
     } catch (const InputError& error) {
       refuse(faults, origin, error.faults().front().message + " (" + next->string() + ")");
     }
-    chain.push_back(readLink(included, *next, faults));
+    chain.back().root = readRoot(included, *next, faults);
   }
-  return chain;
 }
 
 }  // namespace
 
 Json resolveIncludes(std::string_view text, const fs::path& name, FaultList& faults) {
-  std::vector<Link> chain = readChain(text, name, faults);
+  std::vector<Link> chain;
+  readChain(text, name, chain, faults);
   Json root = Json::object();
   if (chain.size() > 1) faults.addOrigin("", {chain.back().file.string(), ""});
   for (auto link = chain.rbegin(); link != chain.rend(); ++link) {
@@ -188,21 +190,15 @@ Json resolveIncludes(std::string_view text, const fs::path& name, FaultList& fau
 }
 
 std::vector<fs::path> filesOfScene(const fs::path& file) {
-  std::vector<fs::path> files{file};
+  std::vector<Link> chain;
   try {
     FaultList ignored(file.string());
-    Link link{file, {}};
-    for (;;) {
-      link = readLink(readTextFile(files.back(), "a scene file"), files.back(), ignored);
-      const std::optional<fs::path> next = takeInclude(link, ignored);
-      const bool known = next && std::any_of(files.begin(), files.end(),
-                                             [&](const fs::path& other) { return sameFile(other, *next); });
-      if (!next || known) break;
-      files.push_back(*next);
-    }
+    readChain(readTextFile(file, "a scene file"), file, chain, ignored);
   } catch (const InputError&) {
     // What is missing or broken is named all the same: whoever waits for it to be mended looks at it.
   }
+  std::vector<fs::path> files{file};
+  for (std::size_t k = 1; k < chain.size(); ++k) files.push_back(std::move(chain[k].file));
   return files;
 }
 

@@ -24,6 +24,10 @@ bool isDigit(char c) {
   return isOneOf(c, "0123456789");
 }
 
+bool isAscii(char c) {
+  return static_cast<unsigned char>(c) < 0x80;
+}
+
 bool beginsNumber(char c) {
   return c == '-' || isDigit(c);
 }
@@ -35,27 +39,43 @@ struct Token {
   std::string_view of(std::string_view text) const { return text.substr(begin, end - begin); }
 };
 
-std::size_t tokenEnd(std::string_view text, std::size_t at) {
+/// Goes to where a number ends, or to where it lacks a digit.
+std::size_t numberEnd(std::string_view text, std::size_t at) {
   const auto now = [&] { return at < text.size() ? text[at] : '\0'; };
-  const auto pass = [&](std::string_view characters) {
-    if (now() != '\0' && isOneOf(now(), characters)) ++at;
+  const auto passDigits = [&] {
+    const std::size_t from = at;
+    while (isDigit(now())) ++at;
+    return at > from;
   };
-  const auto passDigits = [&] { at = std::min(text.find_first_not_of("0123456789", at), text.size()); };
-  if (now() == '"') {
-    for (++at; at < text.size() && now() != '"'; ++at)
-      if (now() == '\\') ++at;
-    return std::min(at + 1, text.size());
-  }
-  if (beginsNumber(now())) {
-    pass("-");
-    now() == '0' ? pass("0") : passDigits();
-    if (now() == '.') ++at, passDigits();
-    if (now() == 'e' || now() == 'E') ++at, pass("+-"), passDigits();
+  if (now() == '-') ++at;
+  if (now() == '0') {
+    ++at;
+  } else if (!passDigits()) {
     return at;
   }
-  const std::size_t begin = at;
-  while (std::isalpha(static_cast<unsigned char>(now())) != 0) ++at;
-  return std::max(at, std::min(begin + 1, text.size()));
+  if (now() == '.') {
+    ++at;
+    if (!passDigits()) return at;
+  }
+  if (now() == 'e' || now() == 'E') {
+    ++at;
+    if (now() == '+' || now() == '-') ++at;
+    passDigits();
+  }
+  return at;
+}
+
+std::size_t tokenEnd(std::string_view text, std::size_t begin) {
+  if (begin == text.size()) return begin;
+  if (beginsNumber(text[begin])) return numberEnd(text, begin);
+  std::size_t at = begin;
+  if (text[begin] == '"') {
+    for (++at; at < text.size() && text[at] != '"'; ++at)
+      if (text[at] == '\\') ++at;
+    return std::min(at + 1, text.size());
+  }
+  while (at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0) ++at;
+  return std::max(at, begin + 1);
 }
 
 /// The first token from `at` on; an empty one at the end of the text.
@@ -139,6 +159,9 @@ std::string controlCharacterFault(char c) {
 /// when it wanted more than there are.
 std::string textFault(std::string_view text, bool ended) {
   const auto invalid = [](std::string_view why) { return "an invalid text (" + std::string(why) + ")"; };
+  const std::string_view kept = text.substr(0, text.size() - 1);
+  const bool cutsCharacter = !isAscii(kept.back()) && !Json::accept(std::string(kept) + '"');
+  if (!ended && cutsCharacter) return invalid("ill-formed UTF-8 byte");
   for (std::size_t k = 1; k < text.size(); ++k) {
     if (text[k] == '\n') return "a text that does not end on its line";
     if (static_cast<unsigned char>(text[k]) < 0x20) return invalid(controlCharacterFault(text[k]));
