@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <sstream>
 
@@ -41,13 +40,8 @@ namespace {
 
 /// With so many significant digits, and never fewer than the whole ones unless there are very many.
 std::string digits(double value, int significant) {
-  char text[64];
-  if (value >= 100 && value < 1e9) {
-    std::snprintf(text, sizeof text, "%.0f", value);
-  } else {
-    std::snprintf(text, sizeof text, "%.*g", significant, value);
-  }
-  return text;
+  const std::string shortest = "%." + std::to_string(significant) + "g";
+  return formatNumber(value >= 100 && value < 1e9 ? "%.0f" : shortest.c_str(), value);
 }
 
 /// Quotients of decimal numbers miss whole ones by what a double cannot hold.
