@@ -148,7 +148,7 @@ std::string controlCharacterFault(char c) {
                                                     "BS",  "HT",  "LF",  "VT",  "FF",  "CR",  "SO",  "SI",
                                                     "DLE", "DC1", "DC2", "DC3", "DC4", "NAK", "SYN", "ETB",
                                                     "CAN", "EM",  "SUB", "ESC", "FS",  "GS",  "RS",  "US"};
-  const auto code = static_cast<std::size_t>(c);
+  const auto code = static_cast<unsigned char>(c);
   const std::string number = {'0', '0', code < 16 ? '0' : '1', "0123456789ABCDEF"[code % 16]};
   const std::size_t brief = std::string_view("\b\t\n\f\r").find(c);
   return "control character U+" + number + " (" + std::string(kNames[code]) + ") must be escaped to \\u" +

@@ -250,7 +250,7 @@ class Reference {
       for (const std::string& cell :
            {code(prefix + key), kind, schema.value(std::string(kUnitNote), ""),
             isRequired ? "required" : defaultOf(schema), schema["description"].get<std::string>()})
-        tables_[table].rows += "| " + escaped(cell) + " ";
+        tables_[table].rows.append("| ").append(escaped(cell)).append(" ");
       tables_[table].rows += "|\n";
       if (ownTable) {
         addRows(newTable(place, schema["description"]), "", schema);
