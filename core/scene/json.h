@@ -40,9 +40,10 @@ std::string childPointer(std::string_view pointer, std::size_t index);
 
 /// Nothing if the text does not begin with '/' or an escape is wrong.
 std::optional<Json::json_pointer> parsePointer(std::string_view text);
+/// From the outermost one on, without escapes.
 std::vector<std::string> tokensOf(Json::json_pointer pointer);
 
-/// Where a value begins in a text that is JSON, or its key, or as much of the way as there is.
+/// The byte at which a value begins in a text that is JSON, or its key, or as much of the way as there is.
 std::size_t offsetOf(std::string_view text, const Json::json_pointer& pointer);
 
 /// What a value is, for "found ...": numbers and short texts themselves, else the kind with its size.

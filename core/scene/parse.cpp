@@ -159,8 +159,8 @@ std::string controlCharacterFault(char c) {
 /// when it wanted more than there are.
 std::string textFault(std::string_view text, bool ended) {
   const auto invalid = [](std::string_view why) { return "an invalid text (" + std::string(why) + ")"; };
-  const std::string_view kept = text.substr(0, text.size() - 1);
-  const bool cutsCharacter = !isAscii(kept.back()) && !Json::accept(std::string(kept) + '"');
+  const std::string_view before = text.substr(0, std::max<std::size_t>(text.size(), 2) - 1);
+  const bool cutsCharacter = !isAscii(before.back()) && !Json::accept(std::string(before) + '"');
   if (!ended && cutsCharacter) return invalid("ill-formed UTF-8 byte");
   for (std::size_t k = 1; k < text.size(); ++k) {
     if (text[k] == '\n') return "a text that does not end on its line";
