@@ -72,9 +72,9 @@ with `migiwa view scenes/hard/NAME.json`. `./run test` runs them all; `./run har
 - **Guards** are what the report lists as `trouble`: a case states which have to act, and no other may but `coincident`:
   whether two particles ever meet on one point, in a corner or after an impact, may hang on the last bit. Frames that had to be
   divided are no trouble, but are named here, as `substeps`.
-- **Without guards** is what the same case does in a program from which every guard of
-  [core/solver/parameters.h](../../core/solver/parameters.h) is left out: "same hash" where none has acted, "holds" where others than those
-  listed have, without need. Its scenes have no CFL rule either (`solver.cfl` 0).
+- **Without guards** is what the same case does with every guard of
+  [core/solver/parameters.h](../../core/solver/parameters.h) switched off: "same hash" where none has acted, "holds" where others than
+  those listed have, without need. Its scenes have no CFL rule either (`solver.cfl` 0).
 
 )";
 
