@@ -41,7 +41,7 @@ bool wallRows(BoundaryParameters& boundary);
 bool maxIterationsRow(SolverParameters& solver);
 bool toleranceRow(SolverParameters& solver);
 
-// The program's panels, one file each. They are drawn one under the other in the current ImGui window.
+// The program's panels. They are drawn one under the other in the current ImGui window.
 
 /// Needs the model's editor.
 void scenePanel(PanelModel& model);

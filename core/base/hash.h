@@ -35,7 +35,7 @@ std::string hexDigits(std::uint64_t hash);
 
 struct FileIdentity {
   std::uint64_t bytes = 0;     ///< that were read; 0: nothing to read
-  std::uint64_t checksum = 0;  ///< of these bytes, see core/base/hash.h
+  std::uint64_t checksum = 0;  ///< of these bytes, as above
 
   bool operator==(const FileIdentity&) const = default;
   /// Both numbers, with a space between.
