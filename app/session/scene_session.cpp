@@ -124,7 +124,7 @@ SceneSession::~SceneSession() {
   {
     const std::lock_guard lock(mutex_);
     quit_ = true;
-    std::erase_if(requests_, [](const Request& wish) { return !wish.save; });
+    std::erase_if(requests_, [](const Request& request) { return !request.save; });
   }
   wake_.notify_one();
   thread_.join();
@@ -147,11 +147,12 @@ std::optional<SceneChange> SceneSession::poll() {
   return std::move(answer.change);
 }
 
-void SceneSession::ask(Request wish) {
+void SceneSession::ask(Request request) {
   const std::lock_guard lock(mutex_);
   // A text that was not yet begun is out of date; so is a look at the same files.
-  std::erase_if(requests_, [&](const Request& known) { return !known.save && known.source == wish.source; });
-  requests_.push_back(std::move(wish));
+  std::erase_if(requests_,
+                [&](const Request& known) { return !known.save && known.source == request.source; });
+  requests_.push_back(std::move(request));
   wake_.notify_one();
 }
 
@@ -159,8 +160,8 @@ void SceneSession::apply(std::string text) {
   ask({SceneChange::Source::text, std::move(text), std::nullopt});
 }
 
-void SceneSession::saveAs(SaveRequest wish) {
-  ask({SceneChange::Source::save, {}, std::move(wish)});
+void SceneSession::saveAs(SaveRequest request) {
+  ask({SceneChange::Source::save, {}, std::move(request)});
 }
 
 void SceneSession::retire(std::unique_ptr<SimulationThread> simulation) {
@@ -184,11 +185,11 @@ void SceneSession::work() {
     if (quit_ && requests_.empty()) return;
     busy_ = true;
     if (!requests_.empty()) {
-      Request wish = std::move(requests_.front());
+      Request request = std::move(requests_.front());
       requests_.pop_front();
       const bool last = quit_;
       lock.unlock();
-      Answer answer = applyRequest(std::move(wish), last);
+      Answer answer = applyRequest(std::move(request), last);
       lock.lock();
       answers_.push_back(std::move(answer));
     } else {
@@ -212,16 +213,16 @@ bool SceneSession::look() {
   }
 }
 
-SceneSession::Answer SceneSession::applyRequest(Request wish, bool last) {
+SceneSession::Answer SceneSession::applyRequest(Request request, bool last) {
   Answer answer;
   SceneChange& change = answer.change;
-  change.source = wish.source;
-  std::string text = std::move(wish.text);
-  if (wish.save) {
-    change.faults = faultsOf(reader_.file, wish.save->text, [&] {
-      text = write(*wish.save);
+  change.source = request.source;
+  std::string text = std::move(request.text);
+  if (request.save) {
+    change.faults = faultsOf(reader_.file, request.save->text, [&] {
+      text = write(*request.save);
       change.fileText = text;
-      change.saved = std::move(wish.save);
+      change.saved = std::move(request.save);
     });
   } else if (change.fromFile()) {
     change.faults = faultsOf(reader_.file, {}, [&] { text = readTextFile(reader_.file, "a scene file"); });
@@ -247,25 +248,25 @@ void SceneSession::read(std::string text, SceneChange& change, Files& named) {
   change.scene = std::move(scene);
 }
 
-std::string SceneSession::write(const SaveRequest& wish) {
-  std::filesystem::path file(wish.name);
+std::string SceneSession::write(const SaveRequest& request) {
+  std::filesystem::path file(request.name);
   if (file.empty() || file.has_parent_path())
     throw InputError("Save as",
                      "expected a file name without a folder (what the scene names is relative to " +
                          std::filesystem::absolute(reader_.file).parent_path().string() + "), found \"" +
-                         wish.name + "\"");
+                         request.name + "\"");
   if (file.extension() != ".json") file += ".json";
   file = reader_.file.parent_path() / file;
 
-  Scene now = parseScene(wish.text, reader_.file, reader_.options.overrides);
-  now.solver = wish.settings.solver;
-  now.boundary = wish.settings.boundary;
-  now.effects = wish.settings.effects;
-  now.view.camera = wish.view.camera;
-  now.view.clip = wish.view.clip;
-  if (now.view.color != wish.view.color) now.view.hasColorRange = false;
-  now.view.color = wish.view.color;
-  std::string written = sceneTextWith(wish.text, reader_.file, now);
+  Scene now = parseScene(request.text, reader_.file, reader_.options.overrides);
+  now.solver = request.settings.solver;
+  now.boundary = request.settings.boundary;
+  now.effects = request.settings.effects;
+  now.view.camera = request.view.camera;
+  now.view.clip = request.view.clip;
+  if (now.view.color != request.view.color) now.view.hasColorRange = false;
+  now.view.color = request.view.color;
+  std::string written = sceneTextWith(request.text, reader_.file, now);
   try {
     writeTextFile(file, written);
   } catch (const std::runtime_error& error) {

@@ -135,7 +135,7 @@ class SimulationThread {
   void applyLoad(std::unique_lock<std::mutex>& lock);
   // With the lock held.
   bool mayAdvance() const;
-  bool refuses(const char* wish, bool needsGoodState);
+  bool refuses(const char* request, bool needsGoodState);
   void begin();
   void stop(std::string why);
   void advance(std::unique_lock<std::mutex>& lock);
@@ -204,7 +204,7 @@ struct SceneChange {
   /// The new scene's simulation at its start; null when the one that runs can take the change over.
   std::unique_ptr<SimulationThread> simulation;
   std::optional<std::string> fileText;  ///< what the scene's file holds now, if that is new
-  std::optional<SaveRequest> saved;     ///< the wish, when it was carried out
+  std::optional<SaveRequest> saved;     ///< the request, when it was carried out
 
   bool fromFile() const { return source == Source::file; }
 };
@@ -227,7 +227,7 @@ class SceneSession {
   void apply(std::string text);
   /// Writes the text, with settings and view, into the scene's folder, and goes on with that file. poll()
   /// tells what became of it: with faults in the text or the name nothing is written.
-  void saveAs(SaveRequest wish);
+  void saveAs(SaveRequest request);
   /// Ends a simulation that nobody needs any more, when its frame is done.
   void retire(std::unique_ptr<SimulationThread> simulation);
 
@@ -254,15 +254,15 @@ class SceneSession {
     std::vector<Override> overrides;
   };
 
-  void ask(Request wish);
+  void ask(Request request);
 
   // On the session's thread.
   void work();
   bool look();
   /// `last`: what is written need not be read again.
-  Answer applyRequest(Request wish, bool last);
-  /// Writes what is wished for, and returns the text that was written.
-  std::string write(const SaveRequest& wish);
+  Answer applyRequest(Request request, bool last);
+  /// Writes what is requested, and returns the text that was written.
+  std::string write(const SaveRequest& request);
   void read(std::string text, SceneChange& change, Files& named);
 
   // Of who asks.

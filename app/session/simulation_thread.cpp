@@ -51,13 +51,13 @@ SimulationThread::~SimulationThread() {
   thread_.join();
 }
 
-/// Whether a wish cannot be carried out now, which the status then says.
-bool SimulationThread::refuses(const char* wish, bool needsGoodState) {
+/// Whether a request cannot be carried out now, which the status then says.
+bool SimulationThread::refuses(const char* request, bool needsGoodState) {
   const bool held = !status_.heldFor.empty();
   const bool refused = held || (needsGoodState && status_.stopped);
   status_.refused.clear();
   if (refused)
-    status_.refused = std::string(wish) + " refused: " + (held ? status_.heldFor : "it has stopped");
+    status_.refused = std::string(request) + " refused: " + (held ? status_.heldFor : "it has stopped");
   return refused;
 }
 

@@ -24,8 +24,8 @@ struct RunStatus {
   bool stopped = false;     ///< it stopped itself and cannot go on
   std::string trouble;      ///< why
   std::string heldFor{};    ///< why no frame begins though it may play; empty: nothing holds it
-  std::string refused{};    ///< one line on the last wish, if it could not be carried out
-  std::string stateNote{};  ///< one line on what became of the last wish to save or load the state
+  std::string refused{};    ///< one line on the last request, if it could not be carried out
+  std::string stateNote{};  ///< one line on what became of the last request to save or load the state
   std::vector<std::string> stateFaults{};  ///< why it was not done; empty when it was
   /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,
   /// or after a reset.
@@ -99,7 +99,7 @@ struct SceneEditor {
   std::string text;
   std::string known;          ///< what the file holds
   std::vector<Fault> faults;  ///< of the last text that was tried
-  std::string note;           ///< one line on what became of the last wish
+  std::string note;           ///< one line on what became of the last request
   std::string saveName;
   bool open = false;
   bool apply = false, save = false, revert = false;  ///< what the user asks for; cleared by whoever does it

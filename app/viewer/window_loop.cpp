@@ -128,7 +128,7 @@ void takeFileText(const std::string& text, bool edited, SceneEditor& editor) {
   if (!edited) editor.replaceText(text);
 }
 
-/// What was typed since the wish stays.
+/// What was typed since the request stays.
 void takeSaved(const SaveRequest& saved, const SceneSession& session, SceneEditor& editor) {
   takeFileText(session.fileText(), editor.text != saved.text, editor);
   editor.fileName = session.file().filename().string();
