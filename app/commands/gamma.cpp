@@ -45,7 +45,7 @@ PickedGamma methodOf(const Scene& scene, const GammaContext& context) {
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
   requireWritable(options.out, "--out");
   const std::vector<Vec3d> points = readPoints(options.points);
-  const Boundary boundary(scene.surfaces);
+  const Boundary boundary(wallsFor(scene.surfaces, static_cast<float>(scene.supportRadius())));
   const GammaContext context = contextOf(scene, boundary, pool);
   const PickedGamma picked = methodOf(scene, context);
   std::vector<Float4> at(points.size());
@@ -187,7 +187,7 @@ std::string titled(const char* quantity, const MethodMap& map) {
 }
 
 void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
-  const Boundary boundary(scene.surfaces);
+  const Boundary boundary(wallsFor(scene.surfaces, static_cast<float>(scene.supportRadius())));
   if (boundary.empty())
     throw InputError(options.scene + ":/boundary/surfaces", "expected a wall to map gamma at, found none");
   const MapWindow window = windowOf(options, scene);

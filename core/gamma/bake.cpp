@@ -99,11 +99,9 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
         static_cast<std::int32_t>(settings.region.size()[axis] / static_cast<double>(grid.blockEdge())) + 1;
   const float h = settings.supportRadius, half = 0.5F * grid.blockEdge();
   const float around = std::sqrt(3.0F) * half;
-  std::vector<const Surface*> thin, curves;
-  for (const auto& surface : boundary.surfaces()) {
-    if (surface->thickness() < h) thin.push_back(surface.get());
+  std::vector<const Surface*> curves;
+  for (const auto& surface : boundary.surfaces())
     if (!surface->planar()) curves.push_back(surface.get());
-  }
   constexpr std::int32_t kUsed = 0;
   const auto kindOf = [&](const Vec3f& center) {
     const float distance = boundary.distance(center);
@@ -114,10 +112,9 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
     });
     if (settings.curvedOnly && !curved) return GammaGrid::kElsewhere;
     // What a thin wall hides jumps across it: no spline.
-    const bool hides = std::any_of(thin.begin(), thin.end(), [&](const Surface* surface) {
-      Vec3f ignored;
-      return surface->distance(center, ignored) < h + around;
-    });
+    const bool hides =
+        std::any_of(boundary.surfaces().begin(), boundary.surfaces().end(),
+                    [&](const auto& surface) { return surface->thinWithin(center, h + around, h); });
     return hides || distance <= -(settings.cell + around) ? GammaGrid::kElsewhere : kUsed;
   };
   const auto width = static_cast<std::size_t>(grid.size[0]), height = static_cast<std::size_t>(grid.size[1]);

@@ -163,7 +163,7 @@ std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context) {
 
 std::unique_ptr<GridGamma> makeBakedGammaIfQuick(const GammaContext& context) {
   auto method = std::make_unique<BakedGamma>(context, true, kQuickBlocks);
-  if (!method->laidOut() || method->used() > kQuickUsed) return nullptr;
+  if (!method->laidOut() || method->used() == 0 || method->used() > kQuickUsed) return nullptr;
   method->fill();
   return method;
 }

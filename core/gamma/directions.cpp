@@ -56,11 +56,6 @@ class DirectionsGamma final : public GammaMethod {
     std::vector<float> hits, enter, leave;
   };
 
-  /// Whether fluid behind the solid counts: not behind a thin one.
-  bool passable(const Surface& surface) const {
-    return surface.reentrant() && surface.thickness() >= support_;
-  }
-
   void atFluidPoint(const Vec3f& p, float distance, const Vec3f& normal, Scratch& scratch,
                     GammaSample& sample) const {
     if (flat_) {
@@ -83,12 +78,12 @@ class DirectionsGamma final : public GammaMethod {
       if (surface->distance(p, ignored) >= support_) continue;
       scratch.near.push_back(surface.get());
       planar = planar && surface->planar();
-      if (!passable(*surface)) surface->firstHits(p, directions_, hits);
+      if (!surface->passable(support_)) surface->firstHits(p, directions_, hits);
     }
     RaySums sums;
     addRays(kernel_, directions_, hits, support_, 1, sums);
     for (const Surface* surface : scratch.near) {
-      if (!passable(*surface)) continue;
+      if (!surface->passable(support_)) continue;
       // The rays' way through the block is taken out; behind it they go on up to the tank's wall.
       scratch.enter = hits;
       scratch.leave.resize(hits.size());

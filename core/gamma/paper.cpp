@@ -167,11 +167,9 @@ class MonteCarloGamma final : public GammaMethod {
 
   /// Whether a place is fluid, and not hidden by a thin wall.
   bool sees(const Vec3f& p, const Vec3f& place) const {
-    Vec3f normal;
-    float entry = 0;
     return boundary_.distance(place) >= 0 &&
            std::none_of(thin_.begin(), thin_.end(),
-                        [&](const Surface* thin) { return thin->crosses(p, place, normal, entry); });
+                        [&](const Surface* thin) { return thin->hides(p, place); });
   }
 
   static float radiusOfMass(float mass) {

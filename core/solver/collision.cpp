@@ -126,16 +126,13 @@ Vec3f clipMove(const std::vector<const Surface*>& walls, const Vec3f& from, bool
 
 void stages::separateNeighbours(StepState& state) {
   const auto seesAllOf = [&](std::size_t i) {
-    Vec3f normal;
     for (const Surface* wall : state.thinWalls)
-      if (wall->distance(state.current[i].xyz(), normal) < state.supportRadius) return false;
+      if (wall->thinWithin(state.current[i].xyz(), state.supportRadius, state.supportRadius)) return false;
     return true;
   };
   const auto sees = [&](std::size_t i, std::size_t j) {
-    Vec3f normal;
-    float entry = 0;
     for (const Surface* wall : state.thinWalls)
-      if (wall->crosses(state.current[i].xyz(), state.current[j].xyz(), normal, entry)) return false;
+      if (wall->hides(state.current[i].xyz(), state.current[j].xyz())) return false;
     return true;
   };
   parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -14,7 +14,7 @@ namespace {
 /// The reference at all points; far from walls it is 1 at once.
 std::vector<GammaSample> referenceGamma(const Scene& scene, double time, std::span<const Float4> positions,
                                         ThreadPool& pool) {
-  Boundary boundary(scene.surfaces);
+  Boundary boundary(wallsFor(scene.surfaces, static_cast<float>(scene.supportRadius())));
   boundary.moveTo(time, time);
   const std::span<const std::string_view> names = gammaMethodNames();
   const auto method = std::find(names.begin(), names.end(), "directions") - names.begin();

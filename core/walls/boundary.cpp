@@ -8,6 +8,7 @@
 
 #include "core/base/fields.h"
 #include "core/base/math.h"
+#include "core/walls/mesh_wall.h"
 #include "core/walls/shapes.h"
 #include "core/walls/slim_wall.h"
 #include "core/walls/surface.h"
@@ -165,6 +166,16 @@ Directions fibonacciDirections(int count) {
     set.z.push_back(static_cast<float>(z));
   }
   return set;
+}
+
+std::vector<std::shared_ptr<const Surface>> wallsFor(
+    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius) {
+  std::vector<std::shared_ptr<const Surface>> walls;
+  for (const auto& surface : surfaces) {
+    std::shared_ptr<const Surface> wall = surface->forSupport(supportRadius);
+    walls.push_back(wall != nullptr ? std::move(wall) : surface);
+  }
+  return walls;
 }
 
 void Surface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {

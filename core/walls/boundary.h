@@ -56,4 +56,8 @@ class Boundary {
   bool steady_ = true;
 };
 
+/// The surfaces as particles of this support radius (m) meet them: Surface::forSupport().
+std::vector<std::shared_ptr<const Surface>> wallsFor(
+    const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius);
+
 }  // namespace migiwa

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/files.h"
+#include "core/walls/boundary.h"
 
 namespace migiwa {
 
@@ -21,7 +22,8 @@ constexpr float kShallow = 0.25F;
 
 GriddedSurface::GriddedSurface(std::shared_ptr<const Surface> shape, float supportRadius, ThreadPool& pool,
                                const std::string& scenePlace)
-    : shape_(std::move(shape)), reach_(kReach * supportRadius) {
+    : reach_(kReach * supportRadius) {
+  shape_ = std::move(shape);
   motion = shape_->motion;
   grid_.cell = supportRadius / kCellsPerSupport;
   const Bounds region = shape_->bounds().grown(static_cast<double>(reach_));
@@ -134,7 +136,7 @@ std::vector<std::shared_ptr<const Surface>> withDistanceGrids(
     const std::string& place) {
   constexpr double kMostBlocks = kMostBytes / sizeof(std::int32_t);
   std::vector<std::shared_ptr<const Surface>> result;
-  for (const auto& surface : surfaces) {
+  for (const auto& surface : wallsFor(surfaces, supportRadius)) {
     const double edge = SplineGrid<1>::kCells * static_cast<double>(supportRadius) /
                         static_cast<double>(GriddedSurface::kCellsPerSupport);
     const bool fits = ((surface->bounds().size() / edge).array() + 6).prod() < kMostBlocks;

@@ -93,7 +93,7 @@ struct SplineWeights {
 // surfaces, asked by every particle near them several times a step. Everything else is the shape's own. The
 // cost does not depend on what the shape is made of.
 
-class GriddedSurface final : public Surface {
+class GriddedSurface final : public StandIn {
   using Grid = SplineGrid<1>;
 
  public:
@@ -114,29 +114,11 @@ class GriddedSurface final : public Surface {
   /// deep in the solid the shape's own.
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
-  void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override {
-    shape_->otherWaysOut(p, margin, out);
+  bool hides(const Vec3f& from, const Vec3f& to) const override {
+    return !outOfReach(from, (to - from).norm()) && shape_->hides(from, to);
   }
-  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {
-    shape_->firstHits(origin, directions, hits);
-  }
-  bool reentrant() const override { return shape_->reentrant(); }
-  void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override {
-    shape_->exits(origin, directions, exits);
-  }
-  float thickness() const override { return shape_->thickness(); }
-  float thinnestPart() const override { return shape_->thinnestPart(); }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
-  bool planar() const override { return shape_->planar(); }
-  PieceRule pieceRule() const override { return shape_->pieceRule(); }
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
-  Bounds bounds() const override { return shape_->bounds(); }
-  void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
-    shape_->wireframe(scene, out);
-  }
-  WallMesh mesh() const override { return shape_->mesh(); }
-  void drawnNodes(std::vector<WallNode>& out) const override { shape_->drawnNodes(out); }
-  const BoxGeometry* tank() const override { return shape_->tank(); }
 
  private:
   /// The spline's value and unit gradient, in a block that has coefficients.
@@ -144,7 +126,6 @@ class GriddedSurface final : public Surface {
   /// Whether the wall is certainly farther than `reach` from p.
   bool outOfReach(const Vec3f& p, float reach) const;
 
-  std::shared_ptr<const Surface> shape_;
   Grid grid_;
   std::vector<float> least_;  ///< distance (m) that every point of a block has
   float reach_;

@@ -38,6 +38,13 @@ class MovingSurface final : public Surface {
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
   float thickness() const override { return rest_->thickness(); }
   float thinnestPart() const override { return rest_->thinnestPart(); }
+  bool passable(float supportRadius) const override { return rest_->passable(supportRadius); }
+  bool thinWithin(const Vec3f& p, float reach, float supportRadius) const override {
+    return rest_->thinWithin(toRest(p), reach, supportRadius);
+  }
+  bool hides(const Vec3f& from, const Vec3f& to) const override {
+    return rest_->hides(toRest(from), toRest(to));
+  }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return rest_->planar(); }
   PieceRule pieceRule() const override { return rest_->pieceRule(); }

@@ -128,19 +128,6 @@ class SlimSurface : public Surface {
   FileName slimFile_, meshFile_;
 };
 
-// A wall from a mesh file: a SLIM surface fitted to it when the scene is read.
-
-class MeshSurface final : public SlimSurface {
- public:
-  void describe(FieldVisitor& visitor) override;
-  void describe(FieldWriter& visitor) const override;
-
- private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, MeshSurface>& self);
-  FileName file_;
-};
-
 // Fitted SLIM walls on disk, so that the second start of a scene need not fit them again. A file is taken
 // only if it is whole and its key is, word for word, the one that is asked for; anything else counts as no
 // file.

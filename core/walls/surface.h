@@ -156,6 +156,9 @@ class Surface {
   virtual bool costlyDistance() const { return false; }
   /// The shape itself where this one stands for it with approximate distances; null where it is exact.
   virtual std::shared_ptr<const Surface> exact() const { return nullptr; }
+  /// The wall as particles of this support radius (m) meet it: which of its parts are thin depends on that.
+  /// Null where it is this one.
+  virtual std::shared_ptr<const Surface> forSupport(float /*supportRadius*/) const { return nullptr; }
 
   /// Mean distance (m) of the wall from the shape that it was fitted to; null where it is what it says, or
   /// that shape is not at hand. Reads the shape anew.
@@ -183,6 +186,21 @@ class Surface {
   /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
   /// neighbours across it are none.
   virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
+  /// Whether rays that enter the solid may go on in the fluid behind it: nowhere behind one that is thinner
+  /// than the support radius (m) as a whole, elsewhere where exits() says so.
+  virtual bool passable(float supportRadius) const { return reentrant() && thickness() >= supportRadius; }
+  /// Whether a solid, or a part of one, that is thinner than the support radius comes nearer than `reach` (m)
+  /// to p.
+  virtual bool thinWithin(const Vec3f& p, float reach, float supportRadius) const {
+    Vec3f ignored;
+    return thickness() < supportRadius && distance(p, ignored) < reach;
+  }
+  /// Whether what is that thin keeps two points of the fluid from being neighbours.
+  virtual bool hides(const Vec3f& from, const Vec3f& to) const {
+    Vec3f normal;
+    float entry = 0;
+    return crosses(from, to, normal, entry);
+  }
   /// The least way through any part of the solid (m), thickness() included: no move may pass through it
   /// unseen, though what lies behind does count.
   virtual float thinnestPart() const { return thickness(); }
@@ -211,6 +229,48 @@ class Surface {
   virtual void drawnNodes(std::vector<WallNode>&) const {}
   /// Non-null for a box that holds the fluid.
   virtual const BoxGeometry* tank() const { return nullptr; }
+};
+
+/// A surface that leaves to another what it does not know better.
+class StandIn : public Surface {
+ public:
+  float distance(const Vec3f& p, Vec3f& normal) const override { return shape_->distance(p, normal); }
+  bool project(Vec3f& p, float margin) const override { return shape_->project(p, margin); }
+  void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override {
+    shape_->otherWaysOut(p, margin, out);
+  }
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {
+    shape_->firstHits(origin, directions, hits);
+  }
+  bool reentrant() const override { return shape_->reentrant(); }
+  void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override {
+    shape_->exits(origin, directions, exits);
+  }
+  float thickness() const override { return shape_->thickness(); }
+  bool passable(float supportRadius) const override { return shape_->passable(supportRadius); }
+  bool thinWithin(const Vec3f& p, float reach, float supportRadius) const override {
+    return shape_->thinWithin(p, reach, supportRadius);
+  }
+  bool hides(const Vec3f& from, const Vec3f& to) const override { return shape_->hides(from, to); }
+  float thinnestPart() const override { return shape_->thinnestPart(); }
+  bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override {
+    return shape_->crosses(from, to, normal, entry);
+  }
+  bool planar() const override { return shape_->planar(); }
+  PieceRule pieceRule() const override { return shape_->pieceRule(); }
+  void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override {
+    shape_->pieces(p, reach, out);
+  }
+  Bounds bounds() const override { return shape_ != nullptr ? shape_->bounds() : Bounds{}; }
+  void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {
+    shape_->wireframe(scene, out);
+  }
+  WallMesh mesh() const override { return shape_->mesh(); }
+  void drawnNodes(std::vector<WallNode>& out) const override { shape_->drawnNodes(out); }
+  const BoxGeometry* tank() const override { return shape_->tank(); }
+
+ protected:
+  std::shared_ptr<const Surface> shape_;  ///< null: not read yet
 };
 
 /// Names for the scene's "shape" key, in the order of makeSurface's index.

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "core/walls/mesh_wall.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Of the support radius: so far behind a plane a point is still taken to lie in front of it.
+constexpr float kOnPlane = 1e-3F;
+/// Cosine between a face and the face behind it, beyond which they bound a wall and not a wedge.
+constexpr float kOpposed = -0.7F;
+/// Places along a triangle's edge at which its thickness is looked at: at most, for triangles that are large
+/// against the support radius.
+constexpr int kMostPlaces = 100;
+/// Cosine between two faces whose edge is drawn smooth.
+constexpr float kSmooth = 0.8F;
+
+}  // namespace
+
+TriangleWall::TriangleWall(std::shared_ptr<const TriangleTree> tree, bool vessel, float supportRadius)
+    : tree_(std::move(tree)), vessel_(vessel), supportRadius_(supportRadius) {
+  measureThickness();
+}
+
+void TriangleWall::measureThickness() {
+  const std::vector<WallTriangle>& triangles = tree_->triangles();
+  thin_.resize(triangles.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const float behind = triangles[k].sheet ? 0 : thicknessBehind(triangles[k]);
+    thin_[k] = triangles[k].sheet || behind < supportRadius_;
+    thickness_ = std::min(thickness_, behind);
+    hasThick_ = hasThick_ || !thin_[k];
+  }
+}
+
+float TriangleWall::thicknessBehind(const WallTriangle& triangle) const {
+  if (supportRadius_ <= 0) return kInfinity;
+  const Vec3f one = triangle.corners[1] - triangle.corners[0],
+              other = triangle.corners[2] - triangle.corners[0];
+  const float longest = std::max({one.norm(), other.norm(), (one - other).norm()});
+  const int places =
+      1 + static_cast<int>(std::min(2 * longest / supportRadius_, static_cast<float>(kMostPlaces)));
+  float least = kInfinity;
+  for (int i = 0; i < places; ++i) {
+    for (int j = 0; i + j < places; ++j) {
+      const float u = (static_cast<float>(i) + 1.0F / 3) / static_cast<float>(places),
+                  v = (static_cast<float>(j) + 1.0F / 3) / static_cast<float>(places);
+      const Vec3f from =
+          triangle.corners[0] + u * one + v * other - kOnPlane * supportRadius_ * triangle.normal;
+      const Vec3f to = from - supportRadius_ * triangle.normal;
+      tree_->visitWay(from, to, [&](std::uint32_t k) {
+        const WallTriangle& behind = tree_->triangles()[k];
+        if (behind.sheet || behind.normal.dot(triangle.normal) > kOpposed) return;
+        const float at = meetingOf(behind, from, to);
+        if (at >= 0) least = std::min(least, (at + kOnPlane) * supportRadius_);
+      });
+    }
+  }
+  return least;
+}
+
+void TriangleWall::describe(FieldWriter& visitor) const {
+  // FNV-1a over the bits of all corners, in halves that a number holds exactly.
+  std::uint64_t sum = 0xCBF29CE484222325U;
+  for (const WallTriangle& triangle : tree_->triangles())
+    for (const Vec3f& corner : triangle.corners)
+      for (int axis = 0; axis < 3; ++axis)
+        sum = (sum ^ std::bit_cast<std::uint32_t>(corner[axis])) * 0x100000001B3U;
+  const double high = static_cast<double>(sum >> 32), low = static_cast<double>(sum & 0xFFFFFFFFU);
+  visitor.number("corners_high", high, Range::closed(0, 0x1p32), {"1", ""});
+  visitor.number("corners_low", low, Range::closed(0, 0x1p32), {"1", ""});
+}
+
+float TriangleWall::distance(const Vec3f& p, Vec3f& normal) const {
+  const TriangleTree::Nearest nearest = tree_->nearest(p);
+  normal = nearest.normal;
+  return nearest.distance;
+}
+
+bool TriangleWall::project(Vec3f& p, float margin) const {
+  constexpr int kRounds = 8;
+  bool moved = false;
+  Vec3f before = p;
+  for (int round = 0; round < kRounds; ++round) {
+    const TriangleTree::Nearest nearest = tree_->nearest(p);
+    const float missing = margin - nearest.distance;
+    if (missing <= 1e-4F * margin) return moved;
+    before = p;
+    p += missing * nearest.normal;
+    moved = true;
+  }
+  // To and fro between two parts of the wall: midway.
+  p = 0.5F * (before + p);
+  return true;
+}
+
+void TriangleWall::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
+  thread_local std::vector<SeenTriangle> seen;
+  seen.clear();
+  const float slack = kOnPlane * supportRadius_;
+  tree_->visitWithin(origin, *std::max_element(hits.begin(), hits.end()), [&](std::uint32_t k) {
+    const WallTriangle& triangle = tree_->triangles()[k];
+    const float height = triangle.normal.dot(origin - triangle.corners[0]);
+    if (triangle.sheet || height >= -slack)
+      seen.push_back(seenFrom(origin, triangle, height < 0 && triangle.sheet));
+  });
+  hitTriangles(seen, directions, hits);
+}
+
+void TriangleWall::exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const {
+  thread_local std::vector<std::uint32_t> inReach;
+  thread_local std::vector<SeenTriangle> thin, thick, behind;
+  thread_local std::vector<float> thinHits, thickHits;
+  const float slack = kOnPlane * supportRadius_;
+  const float reach =
+      supportRadius_ > 0 ? supportRadius_ : static_cast<float>(tree_->bounds().size().norm()) + 1;
+  const auto heightOver = [&](std::uint32_t k) {
+    const WallTriangle& triangle = tree_->triangles()[k];
+    return triangle.normal.dot(origin - triangle.corners[0]);
+  };
+  inReach.clear();
+  bool passable = false;
+  tree_->visitWithin(origin, reach, [&](std::uint32_t k) {
+    inReach.push_back(k);
+    passable = passable || (!thin_[k] && heightOver(k) >= -slack);
+  });
+  std::fill(exits.begin(), exits.end(), kInfinity);
+  if (!passable) return;
+  thin.clear(), thick.clear(), behind.clear();
+  for (const std::uint32_t k : inReach) {
+    const WallTriangle& triangle = tree_->triangles()[k];
+    const float height = heightOver(k);
+    const bool inFront = triangle.sheet || height >= -slack;
+    (!inFront   ? behind
+     : thin_[k] ? thin
+                : thick)
+        .push_back(seenFrom(origin, triangle, height < 0 && (!inFront || triangle.sheet)));
+  }
+  thinHits.assign(exits.size(), kInfinity);
+  thickHits.assign(exits.size(), kInfinity);
+  hitTriangles(thin, directions, thinHits);
+  hitTriangles(thick, directions, thickHits);
+  hitTriangles(behind, directions, exits);
+  for (std::size_t k = 0; k < exits.size(); ++k)
+    if (thinHits[k] <= thickHits[k]) exits[k] = kInfinity;
+}
+
+bool TriangleWall::thinWithin(const Vec3f& p, float reach, float /*supportRadius*/) const {
+  return tree_->visitWithin(p, reach,
+                            [&](std::uint32_t k) { return thin_[k] && tree_->distanceTo(k, p) < reach; });
+}
+
+bool TriangleWall::hides(const Vec3f& from, const Vec3f& to) const {
+  return tree_->visitWay(
+      from, to, [&](std::uint32_t k) { return thin_[k] && meetingOf(tree_->triangles()[k], from, to) >= 0; });
+}
+
+bool TriangleWall::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const {
+  float first = kInfinity;
+  const Vec3f way = to - from;
+  tree_->visitWay(from, to, [&](std::uint32_t k) {
+    const WallTriangle& triangle = tree_->triangles()[k];
+    const float towards = triangle.normal.dot(way);
+    if (towards > 0 && !triangle.sheet) return;
+    const float at = meetingOf(triangle, from, to);
+    if (at < 0 || at >= first) return;
+    first = at;
+    normal = towards > 0 ? Vec3f(-triangle.normal) : triangle.normal;
+  });
+  if (first > 1) return false;
+  entry = first;
+  return true;
+}
+
+WallMesh TriangleWall::mesh() const {
+  // Corners at one place whose faces bend little share a normal.
+  using Place = std::tuple<float, float, float>;
+  const auto placeOf = [](const Vec3f& p) { return Place(p.x(), p.y(), p.z()); };
+  std::map<Place, std::vector<std::pair<Vec3f, float>>> around;
+  const auto areaOf = [](const WallTriangle& t) {
+    return (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).norm();
+  };
+  for (const WallTriangle& triangle : tree_->triangles())
+    for (const Vec3f& corner : triangle.corners)
+      around[placeOf(corner)].emplace_back(triangle.normal, areaOf(triangle));
+  WallMesh drawn;
+  drawn.vessel = vessel_;
+  for (const WallTriangle& triangle : tree_->triangles()) {
+    std::array<std::uint32_t, 3> numbers{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3f normal = Vec3f::Zero();
+      for (const auto& [other, area] : around[placeOf(triangle.corners[k])])
+        if (other.dot(triangle.normal) > kSmooth) normal += area * other;
+      numbers[k] = static_cast<std::uint32_t>(drawn.surface.vertices.size());
+      drawn.surface.vertices.push_back(triangle.corners[k]);
+      drawn.normals.emplace_back(normal.isZero() ? triangle.normal : Vec3f(normal.normalized()));
+    }
+    drawn.surface.triangles.push_back(numbers);
+  }
+  return drawn;
+}
+
+}  // namespace migiwa
