@@ -231,7 +231,7 @@ void readSave(const fs::path& file, Simulation& simulation, SettledSampler& samp
   const std::string content = readAll(file);
   const SavedParts parts = partsOf(content, place);
   try {
-    const Json header = Json::parse(parts.header);
+    const Json header = readJson(parts.header);
     requireSameScene(header, simulation, place);
     StateReader reader(header, parts.arrays);
     simulation.visitState(reader);
