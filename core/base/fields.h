@@ -1,6 +1,6 @@
-// How a struct tells the outside world which JSON keys it has. The struct has one list of its fields, a
+// Which JSON keys a struct has. The struct has one list of its fields, a
 // template over the visitor; reading a scene, writing it with all defaults, its schema and its documentation
-// are visitors of that list. Writing sees the struct as const. Nothing here knows JSON: the readers live in
+// are visitors of that list. Writing has the struct as const. Nothing here knows JSON: the readers live in
 // core/scene.
 #pragma once
 

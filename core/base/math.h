@@ -46,7 +46,7 @@ struct Bounds {
 // versions and between processors, and a difference in the last digit of a particle's position grows into
 // another splash. These need nothing but the operations that IEEE 754 defines to the last digit, in the order
 // in which they are written (-ffp-contract=off); std::sqrt, std::floor, std::fmod and their like are exact,
-// too. What reaches particles takes its functions from here; a test of the sources watches over it.
+// too. What reaches particles takes its functions from here; a test of the sources checks that.
 namespace migiwa::portable {
 
 /// Within 2e-16 for |angle| < 1e6 rad; beyond it, that of an angle within 1e-16 of its size.

@@ -59,7 +59,7 @@ void curlRange(const StepState& state, const Float4* velocities, Float4* out, fl
 template <class Kernel>
 void confineRange(const StepState& state, const Float4* vorticity, Float4* out, float scale,
                   std::size_t begin, std::size_t end) {
-  // A gradient that is a small part of w over the support radius has no direction to speak of.
+  // A gradient that is a small part of w over the support radius has no defined direction.
   constexpr float kFlat = 0.05F;
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);

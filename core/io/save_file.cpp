@@ -88,7 +88,7 @@ class StateReader final : public StateVisitor {
   }
   void text(std::string_view name, std::string& value) override { value = get(name).get<std::string>(); }
 
-  /// Throws StateError for what nobody asked for.
+  /// Throws StateError for values that no part has read.
   void requireAllRead() const {
     if (!unread_.empty())
       throw StateError("only what this version of migiwa simulates, found \"" + *unread_.begin() + "\"");

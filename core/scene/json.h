@@ -1,4 +1,4 @@
-// What only the rim knows of JSON: documents, the faults of their texts with where they come from,
+// JSON, for the readers and writers alone: documents, the faults of their texts with where they come from,
 // includes and overrides.
 #pragma once
 

@@ -180,7 +180,7 @@ class Surface {
   }
 
   /// The least way through the solid (m), infinite where there is no far side. What lies behind a solid
-  /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
+  /// thinner than the support radius does not count: gamma takes only the fluid visible from the point, and
   /// neighbours across it are none.
   virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
   /// The least way through any part of the solid (m), thickness() included: no move may pass through it
