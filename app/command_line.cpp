@@ -142,7 +142,7 @@ int parseAndRun(std::vector<std::string> arguments) {
   return chosen->run(parsedOptions(words));
 }
 
-/// What was printed may still be in memory, and may not fit where it goes, or nobody may read it any more.
+/// What was printed may still be in memory, and may not fit where it goes, or its reader may have ended.
 void requirePrinted() {
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw OutputError("standard output",

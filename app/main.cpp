@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A failure that nobody could take, such as one in a destructor or on a thread of a library.
+/// A failure that nothing could catch, such as one in a destructor or on a thread of a library.
 [[noreturn]] void endWithACode() {
   const std::exception_ptr failure = std::current_exception();
   std::_Exit(failure ? migiwa::exitCodeOf(failure) : migiwa::kNumericalTrouble);

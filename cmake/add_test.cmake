@@ -1,10 +1,11 @@
-# migiwa_add_test(NAME SOURCES file... LABELS label... [LONG regex] [LINK library...] [TIMEOUT seconds])
+# migiwa_add_test(NAME SOURCES file... LABELS label... [LONG regex] [THREADS regex] [SUITES] [LINK library...] [TIMEOUT seconds])
 #
-# One GoogleTest program over migiwa_core, every TEST of it known to ctest by its own name. Labels say what a test
-# needs: unit (core only, short), accuracy (compares with slow quadratures), simulation (runs a scene), hard (a case of
-# scenes/hard), golden (states to the last bit), render (a picture: needs EGL), window (needs a display), threads (worth
-# running under the thread sanitizer). The target tests_LABEL builds all programs with that label. Tests whose names
-# match LONG have the label long, too: ./run test leaves them to ./run check.
+# One GoogleTest program over migiwa_core, every TEST of it known to ctest by its own name; with SUITES, where tests take
+# milliseconds, every suite by its name. Labels say what a test needs: unit (core only, short), accuracy (compares with
+# slow quadratures), simulation (runs a scene), hard (a case of scenes/hard), golden (states to the last bit), render (a
+# picture: needs EGL), window (needs a display), threads (worth running under the thread sanitizer). The target
+# tests_LABEL builds all programs with that label. Tests whose names match THREADS have the label threads, too. Those
+# that match LONG have the label long: ./run test leaves them to ./run check.
 include(GoogleTest)
 find_package(GTest REQUIRED)
 
@@ -29,7 +30,7 @@ function(migiwa_reuse_test_headers name)
 endfunction()
 
 function(migiwa_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;LONG" "SOURCES;LABELS;LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SUITES" "TIMEOUT;LONG;THREADS" "SOURCES;LABELS;LINK")
   if(NOT arg_SOURCES OR NOT arg_LABELS OR arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "migiwa_add_test(${name}): expected SOURCES and LABELS, found '${ARGN}'")
   endif()
@@ -47,24 +48,50 @@ function(migiwa_add_test name)
   # from an earlier run, which would be no test of this one.
   # Labels are set by a file of our own that ctest reads after the discovery's: on its way through the discovery a list
   # of several labels would fall apart.
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-    TEST_LIST ${name}_list PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "MIGIWA_CACHE=${migiwa_test_cache}" FIXTURES_REQUIRED test_cache)
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
-  if(NOT arg_LONG)
-    set(arg_LONG "^$")
+  set(program ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  if(arg_SUITES)
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake @ONLY CONTENT [=[
+set(listed)
+if(EXISTS "@program@")
+  execute_process(COMMAND "@program@" --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+endif()
+string(REGEX MATCHALL "\n[^ \n]+\\." @name@_list "\n${listed}")
+list(TRANSFORM @name@_list REPLACE "\n(.+)\\." "\\1")
+foreach(suite IN LISTS @name@_list)
+  add_test("${suite}" "@program@" "--gtest_filter=${suite}.*")
+  set_tests_properties("${suite}" PROPERTIES TIMEOUT @arg_TIMEOUT@ ENVIRONMENT "MIGIWA_CACHE=@migiwa_test_cache@" FIXTURES_REQUIRED test_cache)
+endforeach()
+]=])
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES TEST_LIST ${name}_list
+      PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "MIGIWA_CACHE=${migiwa_test_cache}" FIXTURES_REQUIRED test_cache)
   endif()
+  set(targets ${arg_LABELS})
+  if(arg_THREADS)
+    list(APPEND targets threads)
+  endif()
+  foreach(pattern arg_LONG arg_THREADS)
+    if(NOT ${pattern})
+      set(${pattern} "^$")
+    endif()
+  endforeach()
   file(CONFIGURE OUTPUT ${labels_file} @ONLY CONTENT [=[
 foreach(test IN LISTS @name@_list)
+  set(labels "@arg_LABELS@")
   if(test MATCHES "@arg_LONG@")
-    set_tests_properties(${test} PROPERTIES LABELS "@arg_LABELS@;long")
-  else()
-    set_tests_properties(${test} PROPERTIES LABELS "@arg_LABELS@")
+    list(APPEND labels long)
   endif()
+  if(test MATCHES "@arg_THREADS@")
+    list(APPEND labels threads)
+  endif()
+  set_tests_properties(${test} PROPERTIES LABELS "${labels}")
 endforeach()
 ]=])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
 
-  foreach(label IN LISTS arg_LABELS)
+  foreach(label IN LISTS targets)
     if(NOT TARGET tests_${label})
       add_custom_target(tests_${label})
     endif()

@@ -1,11 +1,11 @@
-// The camera: what it sees where on the picture, and how the mouse moves it.
+// The camera: its projection onto the picture, and how the mouse moves it.
 #pragma once
 
 #include "core/scene/scene.h"
 
 namespace migiwa {
 
-// Where the camera sees what: matrices for OpenGL, and the rectangle of the picture that shows the scene.
+// The projection: matrices for OpenGL, and the rectangle of the picture that shows the scene.
 
 /// Pixels, origin in the top left corner.
 struct Rect {

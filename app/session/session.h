@@ -38,7 +38,7 @@ class SceneWatch {
   void follow(std::vector<std::filesystem::path> files);
 
   /// Whether what is in the files has changed, and has been the same in the last two calls: while a file is
-  /// still being written, or is missing for a moment, there is nothing to be had. Cheap when nothing
+  /// still being written, or is missing for a moment, the answer is no. Cheap when nothing
   /// happened; a few calls a second are meant. A change is told once.
   bool poll();
 
@@ -69,7 +69,8 @@ class SceneWatch {
 // A simulation on a thread of its own, so that an interface stays quick while a step is slow. UiCommands are
 // carried out between frames; finished frames are handed over as copies. No window, no OpenGL.
 
-/// How fast frames may follow each other. The physics never sees a clock; this only waits between frames.
+/// How fast frames may follow each other. The physics does not depend on a clock; this only waits between
+/// frames.
 enum class Pace { realTime, unlimited };
 
 class SimulationThread {
@@ -228,7 +229,7 @@ class SceneSession {
   /// Writes the text, with settings and view, into the scene's folder, and goes on with that file. poll()
   /// tells what became of it: with faults in the text or the name nothing is written.
   void saveAs(SaveRequest request);
-  /// Ends a simulation that nobody needs any more, when its frame is done.
+  /// Ends a simulation that is no longer needed, when its frame is done.
   void retire(std::unique_ptr<SimulationThread> simulation);
 
   /// Until poll() has something to say about what was begun, and the files have been looked at.

@@ -49,7 +49,7 @@ class Viewer {
                    int height);
   /// The picture of the last frame.
   Image picture() const { return target_->read(); }
-  /// Draws a frame that nobody sees or touches; it depends on no earlier one.
+  /// Draws a frame that is not shown and takes no input; it depends on no earlier one.
   Image takePicture(const FrameView& view, const RunStatus& run, int width, int height);
   void copyToWindow() const { target_->copyToWindow(target_->width(), target_->height()); }
 

@@ -1,6 +1,6 @@
-// How a struct tells the outside world which JSON keys it has. The struct has one list of its fields, a
+// Which JSON keys a struct has. The struct has one list of its fields, a
 // template over the visitor; reading a scene, writing it with all defaults, its schema and its documentation
-// are visitors of that list. Writing sees the struct as const. Nothing here knows JSON: the readers live in
+// are visitors of that list. Writing has the struct as const. Nothing here knows JSON: the readers live in
 // core/scene.
 #pragma once
 
@@ -10,7 +10,6 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -164,12 +163,7 @@ std::span<const std::string_view> registryNames() {
 // A turn about an axis through something's centre, as scenes write it.
 
 /// The right-handed turn by an angle (rad) about a unit axis, after Rodrigues.
-inline Eigen::Matrix3d rotationAbout(const Vec3d& axis, double angle) {
-  const double sine = portable::sin(angle), cosine = portable::cos(angle);
-  Eigen::Matrix3d across;  // of the cross product with the axis
-  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-  return cosine * Eigen::Matrix3d::Identity() + sine * across + (1 - cosine) * (axis * axis.transpose());
-}
+Eigen::Matrix3d rotationAbout(const Vec3d& axis, double angle);
 
 struct Rotation {
   Vec3d axis = Vec3d::UnitY();
@@ -187,10 +181,7 @@ struct Rotation {
       self.axis = Vec3d::UnitY();
     }
   }
-  Eigen::Matrix3d matrix() const {
-    if (degrees == 0) return Eigen::Matrix3d::Identity();
-    return rotationAbout(axis.normalized(), degrees * std::numbers::pi / 180);
-  }
+  Eigen::Matrix3d matrix() const;
 };
 
 // Where a shape from a file stands in a scene: scaled, then turned about the origin, then moved.
@@ -200,10 +191,7 @@ struct Transform {
   Rotation rotate;
   Vec3d translate = Vec3d::Zero();  ///< (m)
 
-  bool operator==(const Transform& other) const {
-    return scale == other.scale && rotate.axis == other.rotate.axis &&
-           rotate.degrees == other.rotate.degrees && translate == other.translate;
-  }
+  bool operator==(const Transform& other) const;
   template <class Visitor>
   static void describe(Visitor& visitor, Visited<Visitor, Transform>& self) {
     visitor.number("scale", self.scale, Range::closed(1e-9, 1e6),
@@ -213,12 +201,8 @@ struct Transform {
                    [&](auto& fields) { Rotation::describe(fields, self.rotate); });
     visitor.vector("translate", self.translate, {"m", "Moves it, at last."});
   }
-  Vec3f point(const Vec3f& p) const {
-    return (rotate.matrix() * (scale * p.cast<double>()) + translate).cast<float>();
-  }
-  Vec3f direction(const Vec3f& n) const {
-    return (rotate.matrix() * n.cast<double>()).normalized().cast<float>();
-  }
+  Vec3f point(const Vec3f& p) const;
+  Vec3f direction(const Vec3f& n) const;
 };
 
 }  // namespace migiwa

@@ -1,4 +1,3 @@
-// METHOD: an exact reduction of the argument, then the Taylor series to the last digit of a double.
 #include "core/base/math.h"
 
 #include <algorithm>
@@ -9,6 +8,71 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/fields.h"
+
+namespace migiwa {
+
+bool Bounds::empty() const {
+  return (min.array() > max.array()).any();
+}
+
+void Bounds::include(const Vec3d& p) {
+  min = min.cwiseMin(p), max = max.cwiseMax(p);
+}
+
+void Bounds::include(const Bounds& other) {
+  min = min.cwiseMin(other.min), max = max.cwiseMax(other.max);
+}
+
+Vec3d Bounds::center() const {
+  return 0.5 * (min + max);
+}
+
+Vec3d Bounds::size() const {
+  return empty() ? Vec3d(Vec3d::Zero()) : Vec3d(max - min);
+}
+
+bool Bounds::contains(const Vec3d& p) const {
+  return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
+}
+
+Bounds Bounds::grown(double by) const {
+  Bounds result = *this;
+  result.min.array() -= by;
+  result.max.array() += by;
+  return result;
+}
+
+// Rotations and transforms, as scenes write them (core/base/fields.h).
+
+Eigen::Matrix3d rotationAbout(const Vec3d& axis, double angle) {
+  const double sine = portable::sin(angle), cosine = portable::cos(angle);
+  Eigen::Matrix3d across;  // of the cross product with the axis
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return cosine * Eigen::Matrix3d::Identity() + sine * across + (1 - cosine) * (axis * axis.transpose());
+}
+
+Eigen::Matrix3d Rotation::matrix() const {
+  if (degrees == 0) return Eigen::Matrix3d::Identity();
+  return rotationAbout(axis.normalized(), degrees * std::numbers::pi / 180);
+}
+
+bool Transform::operator==(const Transform& other) const {
+  return scale == other.scale && rotate.axis == other.rotate.axis && rotate.degrees == other.rotate.degrees &&
+         translate == other.translate;
+}
+
+Vec3f Transform::point(const Vec3f& p) const {
+  return (rotate.matrix() * (scale * p.cast<double>()) + translate).cast<float>();
+}
+
+Vec3f Transform::direction(const Vec3f& n) const {
+  return (rotate.matrix() * n.cast<double>()).normalized().cast<float>();
+}
+
+}  // namespace migiwa
+
+// METHOD: an exact reduction of the argument, then the Taylor series to the last digit of a double.
 namespace migiwa::portable {
 
 namespace {

@@ -31,20 +31,13 @@ struct Bounds {
   Vec3d min = Vec3d::Constant(std::numeric_limits<double>::infinity());
   Vec3d max = Vec3d::Constant(-std::numeric_limits<double>::infinity());
 
-  bool empty() const { return (min.array() > max.array()).any(); }
-  void include(const Vec3d& p) { min = min.cwiseMin(p), max = max.cwiseMax(p); }
-  void include(const Bounds& other) { min = min.cwiseMin(other.min), max = max.cwiseMax(other.max); }
-  Vec3d center() const { return 0.5 * (min + max); }
-  Vec3d size() const { return empty() ? Vec3d(Vec3d::Zero()) : Vec3d(max - min); }
-  bool contains(const Vec3d& p) const {
-    return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
-  }
-  Bounds grown(double by) const {
-    Bounds result = *this;
-    result.min.array() -= by;
-    result.max.array() += by;
-    return result;
-  }
+  bool empty() const;
+  void include(const Vec3d& p);
+  void include(const Bounds& other);
+  Vec3d center() const;
+  Vec3d size() const;
+  bool contains(const Vec3d& p) const;
+  Bounds grown(double by) const;
 };
 
 }  // namespace migiwa
@@ -53,7 +46,7 @@ struct Bounds {
 // versions and between processors, and a difference in the last digit of a particle's position grows into
 // another splash. These need nothing but the operations that IEEE 754 defines to the last digit, in the order
 // in which they are written (-ffp-contract=off); std::sqrt, std::floor, std::fmod and their like are exact,
-// too. What reaches particles takes its functions from here; a test of the sources watches over it.
+// too. What reaches particles takes its functions from here; a test of the sources checks that.
 namespace migiwa::portable {
 
 /// Within 2e-16 for |angle| < 1e6 rad; beyond it, that of an angle within 1e-16 of its size.

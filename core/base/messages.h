@@ -1,5 +1,5 @@
 // What a user is told: failures, one exception each, which the program maps to exit codes; numbers as a
-// person reads them; the name that somebody probably meant.
+// person reads them; the name that was probably meant.
 #pragma once
 
 #include <span>
@@ -65,7 +65,7 @@ struct Ticks {
 };
 Ticks roundTicks(double low, double high, int wanted);
 
-// The known name that somebody probably meant.
+// The known name that was probably meant.
 
 /// Letters to insert, delete, replace or swap with their neighbour to get from one word to the other.
 int editDistance(std::string_view a, std::string_view b);

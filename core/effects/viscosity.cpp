@@ -125,7 +125,7 @@ class ImplicitShear {
   }
 
   void run() {
-    // The change that an explicit step would make sets the measure; beyond a thousandth of it nobody sees.
+    // The change that an explicit step would make sets the scale; a thousandth of it is negligible.
     constexpr double kTolerance = 1e-3;
     constexpr int kMostIterations = 1000;
     const auto v = [&](std::size_t i) -> Float4& { return state_.particles.velocity[i]; };

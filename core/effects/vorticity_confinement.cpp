@@ -3,8 +3,6 @@
 // a = strength h (N x w), N = grad |w| / |grad |w||. Deviations: gradients are taken from differences to the
 // neighbours and measured by those of the resting lattice; and the net force and torque on all of the fluid
 // are taken out as a motion of a rigid body, so that momentum and angular momentum stay what they are.
-#include <Eigen/QR>
-
 #include "core/effects/effects.h"
 #include "core/solver/state.h"
 #include "core/sph/kernels.h"
@@ -18,6 +16,11 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
+
+template <class Vector>
+Vector cross(const Vector& a, const Vector& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
 
 /// w (xyz) and its length (w) from the velocities in `velocities`, which end with the ghost's; the gradient
 /// of a linear field comes out of the sums times `scale`.
@@ -56,7 +59,7 @@ void curlRange(const StepState& state, const Float4* velocities, Float4* out, fl
 template <class Kernel>
 void confineRange(const StepState& state, const Float4* vorticity, Float4* out, float scale,
                   std::size_t begin, std::size_t end) {
-  // A gradient that is a small part of w over the support radius has no direction to speak of.
+  // A gradient that is a small part of w over the support radius has no defined direction.
   constexpr float kFlat = 0.05F;
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
@@ -78,7 +81,7 @@ void confineRange(const StepState& state, const Float4* vorticity, Float4* out, 
     const Vec3f gradient = scale * Pair::kSlope * sums.xyz();
     const float least = kFlat * vorticity[i].w * pairScale.inverseSupport;
     const float length = gradient.norm() + least;
-    out[i] = length > 0 ? Float4(Vec3f(gradient.cross(vorticity[i].xyz()) / length)) : Float4();
+    out[i] = length > 0 ? Float4(Vec3f(cross(gradient, vorticity[i].xyz()) / length)) : Float4();
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
 }
@@ -108,6 +111,8 @@ HWY_EXPORT(confineOfRange);
 
 namespace {
 
+using HWY_NAMESPACE::cross;
+
 /// Sums over all particles, about the origin.
 struct Moments {
   Vec3d place = Vec3d::Zero(), force = Vec3d::Zero(), torque = Vec3d::Zero();
@@ -119,8 +124,16 @@ struct Moments {
   }
 };
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+/// The turn w that answers a torque, inertia w = torque, by Cramer's rule.
+Vec3d turnBy(const Vec3d& torque, const Eigen::Matrix3d& inertia) {
+  constexpr double kLine = 1e-12;
+  const Vec3d x = inertia.col(0), y = inertia.col(1), z = inertia.col(2);
+  const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+  const double determinant = x.dot(yz), trace = inertia.trace();
+  if (determinant > kLine * trace * trace * trace)
+    return Vec3d(torque.dot(yz), torque.dot(zx), torque.dot(xy)) / determinant;
+  // Particles in a line do not resist a turn about it, and resist all turns across it alike.
+  return trace > 0 ? Vec3d(2 / trace * torque) : Vec3d(Vec3d::Zero());
 }
 
 /// Takes from the accelerations those of a rigid body with the same net force and torque.
@@ -142,11 +155,11 @@ void removeNetMotion(const StepState& state, std::vector<Float4>& accelerations)
   const Vec3d torque = sums.torque - cross(centre, sums.force);
   const Eigen::Matrix3d spread = sums.squares - count * centre * centre.transpose();
   const Eigen::Matrix3d inertia = spread.trace() * Eigen::Matrix3d::Identity() - spread;
-  // Particles in a line do not resist a turn about it.
-  const Vec3d turn = inertia.completeOrthogonalDecomposition().solve(torque);
+  const Vec3d turn = turnBy(torque, inertia);
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3d net = mean + cross(turn, state.current[i].xyz().cast<double>() - centre);
+      const Vec3d arm = state.current[i].xyz().cast<double>() - centre;
+      const Vec3d net = mean + cross(turn, arm);
       accelerations[i].setXyz(accelerations[i].xyz() - net.cast<float>());
     }
   });

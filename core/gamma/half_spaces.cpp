@@ -8,7 +8,7 @@ namespace migiwa {
 
 namespace {
 
-/// Of a block, takes out the faces behind those that the point sees, or behind the nearest from inside.
+/// Of a block, takes out the faces behind those visible from the point, or behind the nearest from inside.
 void dropHidden(std::vector<WallPiece>& faces) {
   float nearest = -std::numeric_limits<float>::infinity();
   for (const WallPiece& face : faces) nearest = std::max(nearest, face.planeDistance);

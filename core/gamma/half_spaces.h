@@ -2,8 +2,8 @@
 // half-spaces less the blocks, each an intersection of its own:
 //   gamma = P(tanks) - sum over blocks of P(tanks and block),
 // where P is the part of the kernel inside all half-spaces of a set. Blocks do not overlap each other. A
-// block thinner than the support radius reaches back without end behind the faces that the point sees: what
-// it hides does not count. That is exact but near its rim.
+// block thinner than the support radius reaches back without end behind the faces visible from the point:
+// what it hides does not count. That is exact but near its rim.
 #pragma once
 
 #include <optional>

@@ -88,7 +88,7 @@ class StateReader final : public StateVisitor {
   }
   void text(std::string_view name, std::string& value) override { value = get(name).get<std::string>(); }
 
-  /// Throws StateError for what nobody asked for.
+  /// Throws StateError for values that no part has read.
   void requireAllRead() const {
     if (!unread_.empty())
       throw StateError("only what this version of migiwa simulates, found \"" + *unread_.begin() + "\"");
@@ -231,7 +231,7 @@ void readSave(const fs::path& file, Simulation& simulation, SettledSampler& samp
   const std::string content = readAll(file);
   const SavedParts parts = partsOf(content, place);
   try {
-    const Json header = Json::parse(parts.header);
+    const Json header = readJson(parts.header);
     requireSameScene(header, simulation, place);
     StateReader reader(header, parts.arrays);
     simulation.visitState(reader);

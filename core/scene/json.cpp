@@ -43,6 +43,10 @@ bool isBelow(std::string_view pointer, std::string_view ancestor) {
 
 }  // namespace
 
+Json readJson(std::string_view text) {
+  return Json::parse(text);
+}
+
 std::string childPointer(std::string_view pointer, std::string_view key) {
   return std::string(pointer) + (Json::json_pointer() / std::string(key)).to_string();
 }

@@ -1,5 +1,5 @@
-// What only the rim knows of JSON: documents, the faults of their texts with where they come from, includes
-// and overrides.
+// JSON, for the readers and writers alone: documents, the faults of their texts with where they come from,
+// includes and overrides.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +33,8 @@ struct JsonDocument {
 };
 
 JsonDocument parseJson(std::string_view text);
+/// The same where no user writes the text. Throws Json::exception.
+Json readJson(std::string_view text);
 
 /// `pointer` with one more token, escaped as RFC 6901 asks.
 std::string childPointer(std::string_view pointer, std::string_view key);

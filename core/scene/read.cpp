@@ -43,7 +43,7 @@ std::string child(const std::string& pointer, std::string_view key) {
 }
 
 /// Reads the fields of one JSON object, and of the objects in it, into the structs that visit them. Every
-/// fault is collected; a faulty value leaves the default in place. Keys that nobody asked for are faults.
+/// fault is collected; a faulty value leaves the default in place. Unknown keys are faults.
 class JsonReader final : public FieldVisitor {
  public:
   /// Reads `object` (which must be one), found at `pointer`, through `fields`, then looks for unknown keys.
@@ -255,7 +255,7 @@ class JsonReader final : public FieldVisitor {
   FaultList& faults_;
   std::vector<std::string_view> known_;
   std::set<std::string, std::less<>> faulty_;
-  bool openEnded_ = false;  ///< the deciding key of a variant is wrong: nobody knows which keys belong here
+  bool openEnded_ = false;  ///< the deciding key of a variant is wrong, so which keys belong here is unknown
 };
 
 constexpr std::string_view kSpacing = "/particle_spacing";

@@ -41,8 +41,8 @@ struct FrameView {
   std::span<const std::uint32_t> neighbours;
   std::span<const float> pressure{};     ///< of the last step (Pa); empty unless Simulation::watchPressure()
   std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame; empty in a snapshot
-  /// For pictures of walls that move: all walls as they are now. Null where all stand still, and where
-  /// nobody draws.
+  /// For pictures of walls that move: all walls as they are now. Null where all stand still, and
+  /// where no picture is asked for.
   std::shared_ptr<const WallDrawing> walls{};
 };
 
@@ -69,7 +69,7 @@ struct ColorFieldInfo {
 /// Pressures reach to that of water of `restDensity` (kg/m^3) that stops a jet of the reference speed (m/s).
 ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed, double restDensity);
 
-/// The field's value for each particle; 0 for pressures that nobody has watched.
+/// The field's value for each particle; 0 for pressures that were not watched.
 void colorFieldValues(const FrameView& view, ColorField field, std::vector<float>& out);
 
 }  // namespace migiwa

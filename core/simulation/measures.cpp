@@ -34,7 +34,8 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
                                                 float spacing, float support, ThreadPool& pool) {
   CellGrid grid;
   grid.build(positions, support, pool);
-  // Straight from the grid: lists, and even a sorted copy, would be felt at millions of particles.
+  // Straight from the grid: lists, and even a sorted copy, would take much memory at millions of
+  // particles.
   const std::vector<std::uint32_t>& order = grid.order();
   std::vector<NearestNeighbour> result(order.size());
   parallelFor(pool, order.size(), [&](std::size_t begin, std::size_t end, std::size_t) {

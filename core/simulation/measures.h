@@ -102,7 +102,7 @@ std::optional<UprightTank> uprightTank(const Scene& scene);
 /// run.
 SettledMeasures runUntil(Simulation& simulation, double until, const std::function<bool()>& eachFrame = {});
 
-/// The same with a sampler that lives on: one that comes with a save (core/io/save_file.h) goes on where it
+/// The same with a sampler of the caller's: one that comes with a save (core/io/save_file.h) goes on where it
 /// was, if its run was to end on the same frame.
 SettledMeasures runUntil(Simulation& simulation, double until, SettledSampler& sampler,
                          const std::function<bool()>& eachFrame = {});

@@ -56,7 +56,7 @@ class Simulation {
   const Scene& scene() const;
   FrameView view() const;
   /// The same for a picture: with the walls where some of them move. Their drawing is made when it is first
-  /// asked for in a frame; a run that nobody looks at makes none.
+  /// asked for in a frame; a run without pictures makes none.
   FrameView drawnView() const;
   /// h grad gamma for the density kernel at each particle, in the order of view(); 0 where no wall is in
   /// reach.

@@ -22,7 +22,7 @@ void RunStatistics::noteSpread(const StepState& state, long step) {
   if (state.spreadParticles == 0) return;
   note("heap", step,
        std::to_string(state.spreadParticles) +
-           " particles lay on heaps, many where one has room; they were spread without gaining speed");
+           " particles lay in overfull cells; they were spread without gaining speed");
 }
 
 void RunStatistics::record(const StepState& state, const Health& health, double dt, double seconds) {
@@ -53,7 +53,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   if (!state.suppressedPushes.empty()) {
     note("wall_jump", steps,
          std::to_string(state.suppressedPushes.size()) +
-             " times a wall pushed a particle further than it had come; no speed came of it");
+             " times a wall pushed a particle further than it had moved; the push added no speed");
   }
   noteSpread(state, steps);
   if (state.metCoincident) {

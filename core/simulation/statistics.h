@@ -117,7 +117,7 @@ struct RunStatistics {
   std::vector<Trouble> trouble;
 
   void note(const std::string& kind, long step, const std::string& detail);
-  /// Notes the particles that were spread off heaps, if there are any.
+  /// Notes the particles that were spread off overfull cells, if there are any.
   void noteSpread(const StepState& state, long step);
   /// Takes in a finished substep of `dt` (s) that took `seconds` of wall time.
   void record(const StepState& state, const Health& health, double dt, double seconds);

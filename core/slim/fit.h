@@ -95,7 +95,7 @@ std::string cutTo(SlimData& data, double tolerance, int nodes);
 /// Distances from `points` to the surface.
 SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoint>& points,
                            ThreadPool& pool);
-/// From points on the shape: on a mesh some that no fit sees, of a point cloud all.
+/// From points on the shape: on a mesh some that no fit uses, of a point cloud all.
 SlimStatistics measureSlim(const SlimModel& model, const ImportedShape& shape, ThreadPool& pool);
 
 void transformShape(ImportedShape& shape, const Transform& transform);

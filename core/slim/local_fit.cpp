@@ -12,8 +12,8 @@ namespace migiwa {
 
 namespace {
 
-/// Errors count up to this many radii from the centre: beyond, the weight is under 0.02 and neighbouring
-/// balls speak.
+/// Errors count up to this many radii from the centre: beyond, the weight is under 0.02 and
+/// neighbouring balls dominate.
 constexpr float kErrorReach = 0.7F;
 
 /// Points worked on at a time.

@@ -16,7 +16,7 @@ namespace migiwa {
 
 namespace {
 
-/// Neighbours that a plane goes through, and that sides are handed on to.
+/// Neighbours that a plane goes through, and that orientation is propagated to.
 constexpr std::size_t kNeighbours = 16;
 /// Mean normal of a surface, up to which it counts as closed.
 constexpr double kMostOpen = 0.1;

@@ -23,6 +23,12 @@ CellCoordinates cellOf(const Vec3f& p, float inverseCell) {
 
 }  // namespace
 
+Bounds TriangleMesh::bounds() const {
+  Bounds bounds;
+  for (const Vec3f& vertex : vertices) bounds.include(vertex.cast<double>());
+  return bounds;
+}
+
 PointLevels::PointLevels(const std::vector<OrientedPoint>& points) : points_(points) {
   RandomSequence random(1);
   for (std::size_t k = points_.size(); k > 1; --k)

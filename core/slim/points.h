@@ -144,11 +144,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>>
       triangles;  ///< counter-clockwise seen from the fluid's side, or outside
 
-  Bounds bounds() const {
-    Bounds bounds;
-    for (const Vec3f& vertex : vertices) bounds.include(vertex.cast<double>());
-    return bounds;
-  }
+  Bounds bounds() const;
 };
 
 // Points spread evenly over a mesh.

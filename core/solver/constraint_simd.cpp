@@ -69,7 +69,7 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const auto ofNeighbours = [&state](const auto& centre, std::size_t i)
                                 HWY_ATTR { return sumNeighbours<Kernel>(state, centre, i); };
   stages::ErrorSum error;
-  // Also where the constraint is zero: which particles those are, nobody could predict.
+  // Also where the constraint is zero: a branch on it would be mispredicted.
   const auto solve = [&](std::size_t first, std::size_t count, const Float4* four,
                          const float* fifth) HWY_ATTR {
     const Components sums = loadSome(four, kPairs);

@@ -74,7 +74,7 @@ double wallPush(const StepState& state);
 struct StepState;
 
 /// The sum over the iterations of a step, for each particle. As positions do, it takes part in the stretching
-/// of iterations. Costs a pass over the particles an iteration, so nobody pays who does not ask.
+/// of iterations. Costs a pass over the particles an iteration, and is off by default.
 class PressureSum {
  public:
   void watch(bool on);
@@ -85,7 +85,7 @@ class PressureSum {
   void begin(const StepState& state);
   /// An iteration that moves particles by the multipliers in `state`, stretched by `weight`.
   void iterate(const StepState& state, float weight);
-  /// Pressure (Pa) of each particle in the step that `state` has just made; empty where nobody watched.
+  /// Pressure (Pa) of each particle in the step that `state` has just made; empty unless watched.
   void pressures(const StepState& state, std::vector<float>& out) const;
 
  private:

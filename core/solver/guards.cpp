@@ -1,7 +1,7 @@
-// A guard: pairs of particles that lie on one heap are as many as the square of their number, and so are the
-// time and the memory of listing them. Heaps are therefore spread first, to the volume that their water fills
-// at rest. Positions of the step's start and predicted ones move alike: no particle gains speed by it, and
-// two and two move against each other, so that the centre of mass stays where no wall is in the way.
+// A guard: the pairs of particles in one cell are as many as the square of their number, and so are the time
+// and the memory of listing them. Overfull cells are therefore spread first, to the volume that their water
+// fills at rest. Positions of the step's start and predicted ones move alike: no particle gains speed by it,
+// and two and two move against each other, so that the centre of mass stays where no wall is in the way.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,10 +18,10 @@ namespace migiwa::stages {
 
 namespace {
 
-/// How often what a cell of one support radius holds at rest a heap has at least. Fluid that overlaps twice
-/// or thrice, and what single steps crowd, is left to the solver.
+/// A cell of one support radius is overfull from this many times what it holds at rest on. Fluid that
+/// overlaps twice or thrice, and what single steps crowd, is left to the solver.
 constexpr double kOverfull = 8;
-/// Walls throw back together what was spread through them, the fewer the more often.
+/// Walls move back together what was spread through them: each round leaves fewer.
 constexpr int kMostRounds = 40;
 
 struct Member {
@@ -30,7 +30,7 @@ struct Member {
 };
 
 double fewestOfOverfull(const StepState& state) {
-  // Of a lattice that lies luckily a cell holds one layer more along each axis.
+  // A cell may hold one layer of a lattice more along each axis, as it lies.
   const double across = static_cast<double>(state.supportRadius) / static_cast<double>(state.spacing) + 1;
   return kOverfull * across * across * across;
 }
@@ -65,12 +65,12 @@ void displace(StepState& state, std::uint32_t i, const Vec3f& way) {
 }
 
 /// Spreads the members over a ball: pair by pair to opposite sides, the radii such that they fill it evenly.
-void spreadCell(StepState& state, std::span<const Member> heap) {
-  const std::size_t pairs = heap.size() / 2;
-  const double radius = portable::cbrt(3 * static_cast<double>(heap.size()) / (4 * std::numbers::pi)) *
+void spreadCell(StepState& state, std::span<const Member> members) {
+  const std::size_t pairs = members.size() / 2;
+  const double radius = portable::cbrt(3 * static_cast<double>(members.size()) / (4 * std::numbers::pi)) *
                         static_cast<double>(state.spacing);
   for (std::size_t k = 0; k < pairs; ++k) {
-    const std::uint32_t one = heap[2 * k].particle, other = heap[2 * k + 1].particle;
+    const std::uint32_t one = members[2 * k].particle, other = members[2 * k + 1].particle;
     const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(pairs);
     const Vec3f way = static_cast<float>(radius * portable::cbrt(share)) *
                       coincidentDirection(state.particles.id[one], state.particles.id[other]);
@@ -211,7 +211,7 @@ class Taking {
     });
   }
 
-  /// Takes of all changes in the groups that gained. Of one at moving walls nobody knows what they gave.
+  /// Takes of all changes in the groups that gained. Of a group at moving walls it is unknown what they gave.
   double takeFromGroups(double excess) {
     if (state_.boundary.moves())
       for (const WallSlot& slot : state_.wallSlots) ofGroup_[group_[slot.particle]] = 0;
@@ -266,7 +266,7 @@ class Taking {
     ofGroup_.assign(group_.size(), 0);
     for (std::uint32_t i = 0; i < group_.size(); ++i) {
       group_[i] = root(i);
-      // Where the particle ends counts, too. What moving walls gave is among it: whose it is nobody knows.
+      // Where the particle ends counts, too. What moving walls gave is in it and cannot be told apart.
       const Vec3d change = change_[i].xyz().cast<double>();
       ofGroup_[group_[i]] += change.dot(Vec3f(came(i) - half_).cast<double>()) + 0.5 * change.squaredNorm();
     }

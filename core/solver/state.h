@@ -39,7 +39,7 @@ struct WallSlot {
   GammaSample sample;  ///< at that point
 };
 
-/// Without the room for growth that std::vector would add: at millions of particles it is felt.
+/// Without the room for growth that std::vector would add: at millions of particles the memory counts.
 template <class T>
 void resizeTight(std::vector<T>& values, std::size_t size) {
   values.reserve(size);
@@ -140,8 +140,8 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   float wallMargin() const { return 0.5F * spacing; }
 };
 
-// How far from every wall a particle is at least, without asking the walls: what was measured somewhere, less
-// the way from there. Where that is enough, walls have nothing to say.
+// A lower bound for a particle's distance from every wall, without evaluating the walls: what was measured
+// somewhere, less the way from there. Where that is enough, walls are not evaluated.
 
 /// A bound for how fast the distances of walls change along a way. Of true distances it is 1; those of
 /// splines and of SLIM surfaces overshoot a little about creases.
@@ -173,9 +173,9 @@ inline float knownClearance(const StepState& state, std::size_t i, const Vec3f& 
 class Chebyshev {
  public:
   /// Of the iteration that follows the given errors, in a solve that ends at `tolerance`. The first two are
-  /// 1: they take away the errors that stretching would feed. So is the one that is about to end the solve by
+  /// 1: they reduce the errors that stretching would amplify. So is the one that is about to end the solve by
   /// itself, going by how much the one before it achieved: stretched, it would overshoot, and fluid at rest
-  /// would never calm down, for nothing pulls back what is pushed apart too far.
+  /// would never come to rest, for nothing pulls back what is pushed apart too far.
   float next(const std::vector<IterationError>& errors, double tolerance) {
     // An estimate of the plain iteration's spectral radius. Larger ones converge faster still at rest, and
     // double the density peaks of impacts.

@@ -21,7 +21,7 @@ class EffectPipeline {
   EffectPipeline() = default;
   explicit EffectPipeline(const std::vector<NamedEffect>& effects);
 
-  /// Called with an effect's name after it has acted; empty: nobody watches.
+  /// Called with an effect's name after it has acted; empty: nothing is called.
   using Watch = std::function<void(std::string_view)>;
 
   // Each effect's time is booked under its name.
@@ -101,7 +101,7 @@ void relax(StepState& state);
 /// Neighbours, gamma, density and lambda of the positions as they are, for a picture of the start.
 void prepareFields(StepState& state);
 
-// Walls thinner than the support radius, METHOD: gamma counts only the fluid that a particle sees, so what
+// Walls thinner than the support radius, METHOD: gamma counts only the fluid visible from a particle, so what
 // lies behind such a wall is no neighbour, and no particle may pass through it in one move.
 
 /// The walls of a boundary that are thinner than the support radius (m).

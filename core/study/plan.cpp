@@ -152,7 +152,7 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return std::nullopt;
   try {
-    const Json root = Json::parse(readTextFile(file, "the record of a study's run"));
+    const Json root = readJson(readTextFile(file, "the record of a study's run"));
     RunRecord record;
     record.fingerprint = root.at("fingerprint").get<std::string>();
     record.overrides = root.at("overrides").get<std::vector<std::string>>();

@@ -241,7 +241,7 @@ struct WhatIfAnswer {
   double time = 0;         ///< of the state that was asked about (s)
   double stepSeconds = 0;  ///< wall time of a substep (s): the median over the frames but the first
   double iterations = 0;   ///< of a substep, mean
-  double solverError = 0;  ///< mean density error that the run itself sees after the last substep
+  double solverError = 0;  ///< mean density error that the run itself measures after the last substep
   ReferenceErrors errors;  ///< of the last frame's state
   std::string handling;    ///< how walls were handled, such as "gamma: product"
   std::string trouble;     ///< why it had to stop; empty: it did not

@@ -42,6 +42,14 @@ void Box::describe(FieldVisitor& visitor) {
   }
 }
 
+inline Vec3f Box::toLocal(const Vec3f& p) const {
+  return toLocal_ * (p - center_);
+}
+
+inline Vec3f Box::toWorld(const Vec3f& local) const {
+  return center_ + toLocal_.transpose() * local;
+}
+
 void Box::prepare() {
   geometry_ = {0.5 * (min_ + max_), rotation_.matrix(), 0.5 * (max_ - min_)};
   center_ = geometry_.center.cast<float>();

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "core/base/fields.h"
 #include "core/base/math.h"
 #include "core/walls/surface.h"
@@ -161,14 +163,39 @@ MovingSurface::MovingSurface(std::shared_ptr<const Surface> rest, int group)
   moveTo(0, 0);
 }
 
+Vec3f MovingSurface::toRest(const Vec3f& p) const {
+  return toRest_ * (p - shift_);
+}
+
+Vec3f MovingSurface::toWorld(const Vec3f& p) const {
+  return toRest_.transpose() * p + shift_;
+}
+
+Vec3f MovingSurface::directionToWorld(const Vec3f& direction) const {
+  return toRest_.transpose() * direction;
+}
+
+Vec3f MovingSurface::carriedDirection(const Vec3f& direction) const {
+  return carryTurn_ * direction;
+}
+
+Vec3f MovingSurface::velocity(const Vec3f& p) const {
+  return spin_ * p + drift_;
+}
+
+Vec3f MovingSurface::carried(const Vec3f& p) const {
+  return carryTurn_ * p + carryShift_;
+}
+
 void MovingSurface::moveTo(double before, double now) {
   const Pose old = motion().at(before);
-  now_ = motion().at(now);
-  turned_ = !(now_.linear() - Eigen::Matrix3d::Identity()).isZero(1e-12);
-  toRest_ = now_.linear().transpose().cast<float>();
-  shift_ = now_.translation().cast<float>();
+  const Pose pose = motion().at(now);
+  now_ = now;
+  turned_ = !(pose.linear() - Eigen::Matrix3d::Identity()).isZero(1e-12);
+  toRest_ = pose.linear().transpose().cast<float>();
+  shift_ = pose.translation().cast<float>();
 
-  const Pose carry = now_ * old.inverse();
+  const Pose carry = pose * old.inverse();
   moved_ = !(carry.matrix() - Eigen::Matrix4d::Identity()).isZero(1e-12);
   carryTurn_ = carry.linear().cast<float>();
   carryShift_ = carry.translation().cast<float>();
@@ -225,12 +252,12 @@ void MovingSurface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& 
 }
 
 Bounds MovingSurface::bounds() const {
-  return migiwa::moved(rest_->bounds(), now_);
+  return migiwa::moved(rest_->bounds(), motion().at(now_));
 }
 
 void MovingSurface::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const {
   const std::size_t before = out.size();
-  rest_->wireframe(migiwa::moved(scene, now_.inverse()), out);
+  rest_->wireframe(migiwa::moved(scene, motion().at(now_).inverse()), out);
   for (std::size_t k = before; k < out.size(); ++k) out[k] = {toWorld(out[k].from), toWorld(out[k].to)};
 }
 

@@ -20,16 +20,16 @@ class MovingSurface final : public Surface {
   int group() const { return group_; }
   /// Whether the last step has moved it.
   bool moved() const { return moved_; }
-  Vec3f toRest(const Vec3f& p) const { return toRest_ * (p - shift_); }
-  Vec3f toWorld(const Vec3f& p) const { return toRest_.transpose() * p + shift_; }
-  Vec3f directionToWorld(const Vec3f& direction) const { return toRest_.transpose() * direction; }
+  Vec3f toRest(const Vec3f& p) const;
+  Vec3f toWorld(const Vec3f& p) const;
+  Vec3f directionToWorld(const Vec3f& direction) const;
   /// A direction fixed to the wall a step ago, now.
-  Vec3f carriedDirection(const Vec3f& direction) const { return carryTurn_ * direction; }
+  Vec3f carriedDirection(const Vec3f& direction) const;
 
   void describe(FieldVisitor&) override {}  // what stands at rest was read before
   void describe(FieldWriter& visitor) const override { rest_->describe(visitor); }
-  Vec3f velocity(const Vec3f& p) const override { return spin_ * p + drift_; }
-  Vec3f carried(const Vec3f& p) const override { return carryTurn_ * p + carryShift_; }
+  Vec3f velocity(const Vec3f& p) const override;
+  Vec3f carried(const Vec3f& p) const override;
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override;
@@ -57,7 +57,7 @@ class MovingSurface final : public Surface {
  private:
   std::shared_ptr<const Surface> rest_;
   int group_;
-  Pose now_ = Pose::Identity();
+  double now_ = 0;  ///< where it is (s)
   bool moved_ = false;
   bool turned_ = false;  ///< against the rest frame
   Eigen::Matrix3f toRest_ = Eigen::Matrix3f::Identity();

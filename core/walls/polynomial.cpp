@@ -63,6 +63,14 @@ double nextCrossing(const Cubic& c, double sign, double from, double most) {
 
 }  // namespace
 
+inline Vec3d Polynomial::toLocal(const Vec3f& p) const {
+  return axes_.transpose() * (p.cast<double>() - origin_);
+}
+
+inline Vec3f Polynomial::toWorld(const Vec3d& local) const {
+  return (origin_ + axes_ * local).cast<float>();
+}
+
 Polynomial::Polynomial(const Vec3d& origin, const Vec3d& normal, const Vec3d& xAxis, double radius,
                        std::vector<Term> terms)
     : origin_(origin), normal_(normal), xAxis_(xAxis), radius_(radius), terms_(std::move(terms)) {

@@ -109,8 +109,8 @@ class Box final : public Surface {
   };
   Crossing crossing(const Vec3f& local, const Directions& directions, std::size_t k) const;
   void prepare();
-  Vec3f toLocal(const Vec3f& p) const { return toLocal_ * (p - center_); }
-  Vec3f toWorld(const Vec3f& local) const { return center_ + toLocal_.transpose() * local; }
+  Vec3f toLocal(const Vec3f& p) const;
+  Vec3f toWorld(const Vec3f& local) const;
   Vec3d corner(int index) const;
 
   Vec3d min_ = Vec3d::Zero(), max_ = Vec3d::Ones();
@@ -163,8 +163,8 @@ class Polynomial final : public Surface {
   void prepare();
   /// Whether some of the graph lies inside the ball.
   bool hasSurface() const;
-  Vec3d toLocal(const Vec3f& p) const { return axes_.transpose() * (p.cast<double>() - origin_); }
-  Vec3f toWorld(const Vec3d& local) const { return (origin_ + axes_ * local).cast<float>(); }
+  Vec3d toLocal(const Vec3f& p) const;
+  Vec3f toWorld(const Vec3d& local) const;
   /// The point of the graph inside the ball that is nearest to p, by Newton's method from the best of a few
   /// starts.
   Vec3d foot(const Vec3d& p) const;

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 #include "core/base/fields.h"
 #include "core/base/math.h"
@@ -32,8 +32,8 @@ Directions fibonacciDirections(int count);
 // How a wall moves, as scenes write it: at a constant velocity, in a turn about an axis, to and fro, or by
 // keyframes; what is named adds up. A motion is a function of time alone, so nothing of it needs saving.
 
-/// A rigid move: a rotation and a translation after it (m).
-using Pose = Eigen::Isometry3d;
+/// A rigid move: a rotation and a translation after it (m). It is Eigen::Isometry3d, of <Eigen/Geometry>.
+using Pose = Eigen::Transform<double, 3, Eigen::Isometry>;
 
 /// Where a wall is at a time, relative to where the scene puts it.
 struct Keyframe {
@@ -183,7 +183,7 @@ class Surface {
   }
 
   /// The least way through the solid (m), infinite where there is no far side. What lies behind a solid
-  /// thinner than the support radius does not count: gamma takes only the fluid that the point sees, and
+  /// thinner than the support radius does not count: gamma takes only the fluid visible from the point, and
   /// neighbours across it are none.
   virtual float thickness() const { return std::numeric_limits<float>::infinity(); }
   /// Whether rays that enter the solid may go on in the fluid behind it: nowhere behind one that is thinner
