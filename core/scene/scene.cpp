@@ -21,6 +21,16 @@ Bounds Scene::bounds() const {
   return bounds;
 }
 
+Bounds Scene::domainBounds() const {
+  if (domain.given) {
+    Bounds given;
+    given.min = domain.min, given.max = domain.max;
+    return given;
+  }
+  const Bounds extent = bounds();
+  return surfaces.empty() || extent.empty() ? Bounds() : extent.grown(10 * extent.size().norm());
+}
+
 Camera defaultCamera(const Bounds& bounds, const Vec3d& gravity) {
   Camera camera;
   if (gravity.norm() > 0) camera.up = Vec3d::Zero() - gravity.normalized();  // 0 - 0 has no sign to show
