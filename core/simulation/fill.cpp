@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/files.h"
+#include "core/base/progress.h"
 #include "core/simulation/frame_view.h"
 
 namespace migiwa {
@@ -31,7 +32,10 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
     centers.clear();
     source.fill(scene.particleSpacing, centers);
     const std::size_t before = particles.size();
+    constexpr std::size_t kTold = 4096;
     for (const Vec3d& center : centers) {
+      if (const auto done = static_cast<std::size_t>(&center - centers.data()); done % kTold == 0)
+        Activity::pulse(static_cast<double>(done) / static_cast<double>(centers.size()));
       const Vec3f p = center.cast<float>();
       if (source.trim && boundary.distance(p) < margin) continue;
       particles.position.emplace_back(p);

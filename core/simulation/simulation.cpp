@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/simulation/run_state.h"
@@ -21,6 +23,7 @@ namespace migiwa {
 namespace {
 
 Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
+  const Activity activity("measuring distances to the walls");
   return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
                                     scene.file.string() + ":/boundary/surfaces"));
 }
@@ -111,14 +114,17 @@ void Simulation::State::configure(const Settings& settings) {
 Simulation::Simulation(Scene scene, int threads, Guards guards)
     : state_(std::make_unique<State>(std::move(scene), threads, guards)) {
   State& state = *state_;
+  std::optional<Activity> activity(std::in_place, "filling the sources");
   fillScene(state.scene, state.boundary, state.step.particles);
   state.statistics.fluid.started = static_cast<std::int64_t>(state.step.particles.size());
   state.statistics.fluid.drains.resize(state.scene.drains.size());
+  activity.reset();
   state.configure(settings());
   state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
   // The reader has asked before there were grids of the walls.
   requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
                 state.scene.file.string() + ":/particle_spacing");
+  activity.emplace("looking at the start");
   if (const long inside = state.step.guards ? stabilise(state.step) : 0; inside > 0) {
     state.statistics.note("started_in_wall", 0,
                           std::to_string(inside) +

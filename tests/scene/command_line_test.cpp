@@ -236,6 +236,19 @@ TEST_F(CommandLine, WhatLeavesTheSceneIsCountedAndNoTrouble) {
   EXPECT_LT(report.find("\"particles\": 8", left), report.find('}', left));
 }
 
+TEST_F(CommandLine, TroubleIsSaidOnceWhenItHappensAndNotInTheReportAlone) {
+  // Fluid that begins in a wall is moved out of it at the start; the run goes on.
+  std::ofstream(folder_ / "wall.json") << R"({ "format": 1, "particle_spacing": 0.1, "gravity": [0, 0, 0],
+    "fluid": [ { "shape": "box", "min": [0, -0.1, 0], "max": [0.5, 0.4, 0.5], "trim": false } ],
+    "boundary": { "surfaces": [ { "shape": "plane", "point": [0, 0, 0], "normal": [0, 1, 0] } ] } })";
+  const Outcome outcome = run({"simulate", "wall.json", "--until", "0.02", "--report", "report.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::size_t said = outcome.err.find("wall.json: started_in_wall at step 0: ");
+  EXPECT_NE(said, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("started_in_wall", said + 20), std::string::npos) << outcome.err;
+  EXPECT_NE(readAll(folder_ / "report.json").find("started_in_wall"), std::string::npos);
+}
+
 TEST_F(CommandLine, SummaryComparesReports) {
   for (const char* handling : {"none", "gamma"}) {
     const Outcome outcome =
