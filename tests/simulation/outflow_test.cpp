@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/drain.h"
+#include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/state.h"
 #include "tests/support/test_scenes.h"
@@ -137,6 +138,36 @@ TEST(Outflow, ABlowUpIsNotDisguisedAsLeft) {
   EXPECT_TRUE(run.failed());
   EXPECT_TRUE(std::any_of(run.trouble.begin(), run.trouble.end(),
                           [](const Trouble& trouble) { return trouble.kind == "lost_particle"; }));
+}
+
+TEST(Outflow, BoundsAndDrainsAreWrittenAsTheyAreReadAndFluidBeyondThemIsWarnedOf) {
+  const Scene scene = parseScene(R"({ "format": 1, "particle_spacing": 0.05,
+    "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [0.5, 0.5, 0.5] },
+               { "shape": "box", "min": [2, 0, 0], "max": [3, 1, 1] } ],
+    "emitters": [ { "shape": "disc", "center": [0, 4, 0], "radius": 0.1, "direction": [0, -1, 0], "speed": 1 } ],
+    "drains": [ { "shape": "box", "min": [0, 0, 0], "max": [0.1, 0.2, 0.3], "rotation": { "axis": [0, 1, 0], "degrees": 30 } },
+                { "shape": "sphere", "center": [1, 0, 0], "radius": 0.2, "start": 1, "stop": 2 } ],
+    "bounds": { "min": [-1, -1, -1], "max": [1, 1, 1] } })",
+                                 "a.json");
+  ASSERT_EQ(scene.warnings.size(), 2U);
+  EXPECT_NE(scene.warnings[0].find("fluid/1 lies outside"), std::string::npos) << scene.warnings[0];
+  EXPECT_NE(scene.warnings[1].find("emitters/0 lies outside"), std::string::npos) << scene.warnings[1];
+  EXPECT_EQ(scene.domainBounds().max, Vec3d(1, 1, 1));
+  ASSERT_EQ(scene.drains.size(), 2U);
+  EXPECT_EQ(scene.drains[1].stop, 2);
+  const std::string text = writeScene(scene);
+  EXPECT_EQ(writeScene(parseScene(text, "a.json")), text);
+}
+
+TEST(Outflow, WithoutBoundsTheyAreTenDiagonalsBeyondTheScene) {
+  const Scene walled = table();
+  // Fluid and block together are 1.2 m wide and deep and 0.8 m high.
+  const double away = 10 * std::sqrt(1.2 * 1.2 * 2 + 0.8 * 0.8);
+  EXPECT_NEAR(walled.domainBounds().min.x(), -0.6 - away, 1e-9);
+  EXPECT_NEAR(walled.domainBounds().max.y(), 0.6 + away, 1e-9);
+  Scene open = walled;
+  open.surfaces.clear();
+  EXPECT_TRUE(open.domainBounds().empty());
 }
 
 TEST(Outflow, WhatStartsFastMayLeaveFast) {
