@@ -145,6 +145,7 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
       state.pool, particles.size(), Health{},
       [&](std::size_t begin, std::size_t end) {
         Health part;
+        float fastest2 = 0, farthest2 = 0;
         for (std::size_t i = begin; i < end; ++i) {
           const Vec3f position = particles.position[i].xyz(), velocity = particles.velocity[i].xyz();
           if (!position.allFinite() || !velocity.allFinite()) {
@@ -152,8 +153,8 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
             part.firstBad = particles.id[i];
             continue;
           }
-          part.maxSpeed = std::max(part.maxSpeed, velocity.norm());
-          part.farthest = std::max(part.farthest, position.norm());
+          fastest2 = std::max(fastest2, velocity.squaredNorm());
+          farthest2 = std::max(farthest2, position.squaredNorm());
           part.energy.add(position, velocity, limits.centre);
           const bool clear = particles.position[i].w > 0;
           const float penetration = clear ? 0 : -state.boundary.distance(position);
@@ -171,6 +172,7 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
             part.firstBad = particles.id[i];
           }
         }
+        part.maxSpeed = std::sqrt(fastest2), part.farthest = std::sqrt(farthest2);
         return part;
       },
       [](Health a, const Health& b) {
