@@ -1,11 +1,13 @@
 #include "app/command_line.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <type_traits>
@@ -13,8 +15,10 @@
 #include <variant>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 
 namespace migiwa {
 
@@ -58,6 +62,39 @@ std::vector<Option> commonOptions(CommonWords& words) {
            .group = group},
           {.name = "--quiet", .target = &words.quiet, .help = "No progress.", .group = group}};
 }
+
+/// Says on the standard error stream what takes more than a second: one line that changes on a terminal, some
+/// lines elsewhere.
+class PreparationNotes final : public ProgressObserver {
+ public:
+  void reached(std::string_view what, double part) override {
+    const Clock::time_point now = Clock::now();
+    if (what != what_) what_ = what, began_ = now, told_ = now;
+    const double elapsed = std::chrono::duration<double>(now - began_).count();
+    const double silent = std::chrono::duration<double>(now - told_).count();
+    const bool first = told_ == began_;
+    if (elapsed < kPatience || (!first && silent < (terminal_ ? kRedraw : kRepeat))) return;
+    told_ = now;
+    shown_ = terminal_;
+    std::fprintf(stderr, "%s%s: %.0f %%, %.0f s%s", terminal_ ? "\r" : "", what_.c_str(), 100 * part, elapsed,
+                 terminal_ ? "\033[K" : "\n");
+    std::fflush(stderr);
+  }
+  void ended() override {
+    if (shown_) std::fputs("\r\033[K", stderr);
+    shown_ = false;
+    what_.clear();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kPatience = 1, kRedraw = 0.1, kRepeat = 5;  // (s)
+
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
+  std::string what_;
+  Clock::time_point began_, told_;
+  bool shown_ = false;
+};
 
 void addOption(CLI::App& parser, const Option& option) {
   CLI::Option* const added = std::visit(
@@ -139,7 +176,11 @@ int parseAndRun(std::vector<std::string> arguments) {
   }
   const auto chosen = std::find_if(declared.begin(), declared.end(),
                                    [](const Declared& command) { return command.parser->parsed(); });
-  return chosen->run(parsedOptions(words));
+  const CommonOptions options = parsedOptions(words);
+  PreparationNotes notes;
+  std::optional<ProgressScope> watched;
+  if (!options.quiet) watched.emplace(notes);
+  return chosen->run(options);
 }
 
 /// What was printed may still be in memory, and may not fit where it goes, or its reader may have ended.

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -98,6 +99,8 @@ class ProgressBar {
 
   /// `time` (s) is reached. Draws at most ten times a second.
   void update(double time);
+  /// Makes room for another message; the next update draws it anew.
+  void wipe();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -106,6 +109,28 @@ class ProgressBar {
   bool shown_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point drawn_ = start_;
+};
+
+// Trouble of a run on the standard error stream: each kind once, when it first happens.
+
+class TroubleNotes {
+ public:
+  /// `scene` as it was given.
+  explicit TroubleNotes(std::string scene) : scene_(std::move(scene)) {}
+
+  /// Takes what a save brought as said.
+  void takeAsSaid(const RunStatistics& run) { seen_ = run.trouble.size(); }
+  /// Says what is new, but for steps that ended at max_iterations: an ordinary ending.
+  void look(const RunStatistics& run, ProgressBar& progress);
+  /// Of a run that has stopped: says all that was not said.
+  void finish(const RunStatistics& run);
+
+ private:
+  void say(const Trouble& trouble);
+
+  std::string scene_;
+  std::size_t seen_ = 0;  ///< kinds that were looked at; new ones come last
+  std::set<std::string, std::less<>> said_;
 };
 
 // Reports side by side, for a person to read.

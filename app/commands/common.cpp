@@ -124,7 +124,30 @@ ProgressBar::ProgressBar(double from, double until, bool quiet)
     : from_(from), until_(until), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
+  wipe();
+}
+
+void ProgressBar::wipe() {
   if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void TroubleNotes::say(const Trouble& trouble) {
+  if (!said_.insert(trouble.kind).second) return;
+  std::cerr << scene_ << ": " << trouble.kind << " at step " << trouble.step << ": " << trouble.detail
+            << '\n';
+}
+
+void TroubleNotes::look(const RunStatistics& run, ProgressBar& progress) {
+  for (; seen_ < run.trouble.size(); ++seen_) {
+    const Trouble& trouble = run.trouble[seen_];
+    if (trouble.kind == "not_converged") continue;
+    progress.wipe();
+    say(trouble);
+  }
+}
+
+void TroubleNotes::finish(const RunStatistics& run) {
+  for (const Trouble& trouble : run.trouble) say(trouble);
 }
 
 void ProgressBar::update(double time) {

@@ -102,12 +102,15 @@ class Drawing {
     Viewer viewer(scene, simulation.walls(),
                   {scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note});
     describe(viewer, scene.view.color);
+    TroubleNotes trouble(options_.scene);
     {
       ProgressBar progress(0, job_.times.back(), common_.quiet);
+      trouble.look(simulation.statistics(), progress);
       for (std::size_t i = 0; i < job_.times.size(); ++i) {
         const long frame = simulation.frameAt(job_.times[i]);
         while (simulation.frame() < frame && !simulation.stopped()) {
           simulation.advanceFrame();
+          trouble.look(simulation.statistics(), progress);
           progress.update(simulation.time());
         }
         if (simulation.frame() < frame) break;
@@ -117,10 +120,7 @@ class Drawing {
       }
     }
     if (!simulation.stopped()) return true;
-    for (const Trouble& trouble : simulation.statistics().trouble) {
-      std::cerr << options_.scene << ": " << trouble.kind << " at step " << trouble.step << ": "
-                << trouble.detail << '\n';
-    }
+    trouble.finish(simulation.statistics());
     return false;
   }
 

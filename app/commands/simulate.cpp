@@ -63,7 +63,9 @@ class SimulateRun {
     SettledMeasures settled;
     {
       ProgressBar progress(simulation_.time(), until_, common_.quiet);
+      trouble_.look(simulation_.statistics(), progress);
       settled = runUntil(simulation_, until_, sampler_, [&] {
+        trouble_.look(simulation_.statistics(), progress);
         progress.update(simulation_.time());
         if (!simulation_.stopped()) afterFrame();
         return true;
@@ -77,6 +79,7 @@ class SimulateRun {
  private:
   void resume() {
     readSave(options_.resume, simulation_, sampler_);
+    trouble_.takeAsSaid(simulation_.statistics());
     if (simulation_.frameAt(until_) >= simulation_.frame()) return;
     std::ostringstream message;
     message << "expected at least " << simulation_.time() << " s, the time of " << options_.resume
@@ -98,7 +101,13 @@ class SimulateRun {
 
   void afterFrame() {
     const long frame = simulation_.frame();
-    if (export_ && (exportTimes_->due(frame) || frame == last_)) addToExport();
+    if (export_) {
+      if (exportTimes_->due(frame) || frame == last_) {
+        addToExport();
+      } else {
+        lastGood_ = particles();
+      }
+    }
     if (options_.saveEvery && frame < last_ &&
         ExportSchedule(*options_.saveEvery, job_.scene.solver.timeStep).due(frame)) {
       // Whoever goes on from this save does not write again what came before it.
@@ -107,10 +116,28 @@ class SimulateRun {
     }
   }
 
-  void addToExport() { export_->add(copyParticles(simulation_.view(), simulation_.frame(), job_.fields)); }
+  ParticleFrame particles() const {
+    return copyParticles(simulation_.view(), simulation_.frame(), job_.fields);
+  }
+
+  void addToExport() {
+    exported_ = simulation_.time();
+    lastGood_.reset();
+    export_->add(particles());
+  }
+
+  /// Of a run that has stopped: the state before the step that was refused, or that of the frame before what
+  /// was lost.
+  void exportLastGood() {
+    if (simulation_.goodState() && simulation_.time() > exported_) lastGood_ = particles();
+    const double time = lastGood_ ? lastGood_->time : exported_;
+    if (lastGood_) export_->add(std::move(*lastGood_));
+    std::cerr << options_.exportFolder << ": the last file has the last good frame, at " << time << " s\n";
+  }
 
   void finishExport() {
     if (!export_) return;
+    if (simulation_.stopped()) exportLastGood();
     export_->finish();
     if (const long later = export_->laterFiles(); later > 0)
       std::cerr << options_.exportFolder
@@ -120,7 +147,7 @@ class SimulateRun {
 
   void save() { writeSave(options_.save, simulation_, sampler_, common_.overrides); }
 
-  int report(const SettledMeasures& settled) const {
+  int report(const SettledMeasures& settled) {
     const Report report = makeReport(simulation_, settled, common_.overrides);
     if (options_.report.empty()) {
       std::cout << reportTable({report});
@@ -128,9 +155,7 @@ class SimulateRun {
       writeTextFile(options_.report, reportText(report));
     }
     if (!simulation_.stopped()) return kDone;
-    for (const Trouble& trouble : report.trouble)
-      std::cerr << options_.scene << ": " << trouble.kind << " at step " << trouble.step << ": "
-                << trouble.detail << '\n';
+    trouble_.finish(simulation_.statistics());
     return kNumericalTrouble;
   }
 
@@ -150,6 +175,9 @@ class SimulateRun {
   long last_ = 0;  ///< frame at the end
   std::optional<ExportSchedule> exportTimes_;
   std::unique_ptr<ParticleExport> export_;
+  std::optional<ParticleFrame> lastGood_;  ///< of an export: the last frame, unless it was exported
+  double exported_ = 0;                    ///< time of the last frame that was (s)
+  TroubleNotes trouble_{options_.scene};
 };
 
 std::vector<Option> ownOptions(SimulateOptions& options) {

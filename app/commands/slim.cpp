@@ -7,8 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include <unistd.h>
-
 #include "app/commands/command.h"
 #include "app/commands/plots.h"
 #include "app/platform/context.h"
@@ -78,13 +76,9 @@ int fit(const SlimOptions& options, const CommonOptions& common) {
   wanted.nodes = options.nodes.value_or(0);
 
   ThreadPool pool(common.threads);
-  const bool shown = !common.quiet && isatty(STDERR_FILENO) == 1;
   const auto start = std::chrono::steady_clock::now();
-  SlimData data = fitShape(shape, wanted, pool, [shown](double part) {
-    if (shown) std::fprintf(stderr, "\rfitting: %3.0f %%", 100 * part);
-  });
+  SlimData data = fitShape(shape, wanted, pool);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (shown) std::fputs("\r\033[K", stderr);
   data.statistics.source = std::filesystem::path(options.mesh).filename().string();
   writeTextFile(options.out, slimFileText(data));
 

@@ -146,7 +146,12 @@ class Study {
         if (!chosen(run) ||
             (record && (!pending(*record) || record->timings.size() > static_cast<std::size_t>(round))))
           continue;
-        const auto eachFrame = [&](double time) { progress.update(done + time); };
+        TroubleNotes trouble(job_.plan.scene.string() + ", run " + std::to_string(run));
+        const auto eachFrame = [&](const Simulation& simulation) {
+          // Repetitions have the trouble of the first.
+          if (!record) trouble.look(simulation.statistics(), progress);
+          progress.update(done + simulation.time());
+        };
         if (record) {
           repeatRun(job_.plan, run, common_.threads, eachFrame, *record);
         } else {

@@ -97,6 +97,8 @@ std::vector<Row> rows() {
       {"iterations a step, mean", "", [](const Report& r) { return number(r.iterationsMean, "%.2f"); }},
       {"time a step, median", "ms", [](const Report& r) { return number(r.stepMedian, "%.2f"); }},
       {"wall time", "s", [](const Report& r) { return number(r.wallSeconds, "%.1f"); }},
+      {"left the scene", "", [](const Report& r) { return number(r.leftParticles, "%.0f"); }},
+      {"drained", "", [](const Report& r) { return number(r.drainedParticles, "%.0f"); }},
       {"lost particles", "", [](const Report& r) { return number(r.lostParticles, "%.0f"); }},
   };
 }

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <sstream>
+#include <utility>
 
 #include "core/base/fields.h"
+#include "core/base/progress.h"
 
 namespace migiwa {
 
@@ -106,6 +108,43 @@ std::string Range::text() const {
     out << "in " << (openMin ? "(" : "[") << min << ", " << max << (openMax ? ")" : "]");
   }
   return out.str();
+}
+
+// How far something is that takes long (core/base/progress.h).
+
+namespace {
+
+thread_local ProgressObserver* watching = nullptr;
+thread_local Activity* current = nullptr;
+
+}  // namespace
+
+ProgressScope::ProgressScope(ProgressObserver& observer) : before_(std::exchange(watching, &observer)) {}
+
+ProgressScope::~ProgressScope() {
+  watching = before_;
+}
+
+Activity::Activity(std::string what) : what_(std::move(what)), outer_(std::exchange(current, this)) {
+  if (watching != nullptr) watching->reached(what_, 0);
+}
+
+Activity::~Activity() {
+  current = outer_;
+  if (watching != nullptr && outer_ == nullptr) watching->ended();
+}
+
+void Activity::reach(double part) {
+  part_ = std::clamp(part, 0.0, 1.0);
+  if (watching != nullptr) watching->reached(what_, part_);
+}
+
+void Activity::pulse(double part) {
+  if (watched()) watching->reached(current->what_, current->part_ < 0 ? part : current->part_);
+}
+
+bool Activity::watched() {
+  return watching != nullptr && current != nullptr;
 }
 
 }  // namespace migiwa

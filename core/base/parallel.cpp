@@ -7,6 +7,7 @@
 #include <pthread.h>
 
 #include "core/base/files.h"
+#include "core/base/progress.h"
 
 namespace migiwa {
 
@@ -53,6 +54,15 @@ double threadsThatFit() {
   return stack > 0 ? std::min(0.5 * availableMemory() / static_cast<double>(stack), kMost) : kMost;
 }
 
+/// Of the region that this thread has called for.
+thread_local std::size_t calledChunks = 0;
+
+/// Says how far that region is when `left` of its chunks are not begun.
+void tellProgress(std::size_t left) {
+  if (Activity::watched() && calledChunks > 0)
+    Activity::pulse(1 - static_cast<double>(left) / static_cast<double>(calledChunks));
+}
+
 }  // namespace
 
 ThreadPool::ThreadPool(int threads) {
@@ -85,6 +95,7 @@ void ThreadPool::takeChunks(std::uint32_t region) {
       const std::lock_guard lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
     }
+    tellProgress(leftOf(tickets) - 1);
     if (--pending_ == 0 && callerSleeps_) {
       const std::lock_guard lock(mutex_);
       done_.notify_one();
@@ -110,8 +121,12 @@ void ThreadPool::work() {
 }
 
 void ThreadPool::run(std::size_t chunks, const std::function<void(std::size_t)>& task) {
+  calledChunks = chunks;
   if (workers_.empty() || chunks <= 1) {
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) task(chunk);
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      task(chunk);
+      tellProgress(chunks - chunk - 1);
+    }
     return;
   }
   task_ = &task;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/fields.h"
+#include "core/base/progress.h"
 
 namespace migiwa {
 
@@ -37,6 +38,7 @@ std::span<const std::string_view> steppedGammaMethodNames() {
 
 PickedGamma makeGammaMethod(int index, const GammaContext& context) {
   const Entry& entry = kMethods.at(static_cast<std::size_t>(index));
+  const Activity activity("preparing gamma by the method \"" + std::string(entry.name) + "\"");
   std::unique_ptr<GammaMethod> method = entry.make(context);
   const GammaChoice choice = method->choice();
   if (choice.name.empty()) return {std::move(method), std::string(entry.name), {}};
@@ -65,6 +67,7 @@ PickedGamma makeHandling(BoundaryHandling handling, int gammaMethod, const Gamma
   if (handling == BoundaryHandling::gamma) return makeGammaMethod(gammaMethod, context);
   const Entry& entry = kHandlings.at(static_cast<std::size_t>(handling));
   if (entry.make == nullptr) return {};
+  const Activity activity("preparing the handling of walls \"" + std::string(entry.name) + "\"");
   std::unique_ptr<GammaMethod> method = entry.make(context);
   std::string reason = method->choice().reason;
   return {std::move(method), std::string(entry.name), std::move(reason)};
@@ -82,6 +85,7 @@ std::vector<float> gammaMap(const GammaMethod& method, const Boundary& boundary,
                             ThreadPool& pool) {
   const auto columns = static_cast<std::size_t>(window.columns);
   std::vector<float> values(columns * static_cast<std::size_t>(window.rows));
+  const Activity activity("evaluating gamma on a map");
   pool.run(static_cast<std::size_t>(window.rows), [&](std::size_t row) {
     std::vector<Float4> points;
     std::vector<GammaSample> samples(columns);

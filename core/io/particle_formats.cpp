@@ -98,7 +98,9 @@ ParticleFormat plyFormat() {
   return {"ply", true, "", plyText};
 }
 
-// VTK's legacy format, binary (which is big-endian): points, a vertex cell for each, and point data.
+// VTK's legacy format, binary (which is big-endian): points, a vertex cell for each, and point data. As
+// arrays of a FIELD, for of several SCALARS some readers show only the first; also where there is no
+// particle, so that a sequence has the same arrays throughout.
 
 namespace {
 
@@ -108,17 +110,14 @@ void appendTriples(std::string& text, const std::vector<FloatTriple>& triples) {
 }
 
 void appendField(std::string& text, const ParticleField& field) {
-  const std::string name(field.name);
-  if (field.kind == ParticleField::Kind::vectors) {
-    text += "VECTORS " + name + " float\n";
-    appendTriples(text, field.vectors);
-  } else {
-    text += "SCALARS " + name +
-            (field.kind == ParticleField::Kind::numbers ? " float 1" : " unsigned_int 1") +
-            "\nLOOKUP_TABLE default\n";
-    for (const float x : field.numbers) appendBytes<std::endian::big>(text, x);
-    for (const std::uint32_t x : field.integers) appendBytes<std::endian::big>(text, x);
-  }
+  const bool vectors = field.kind == ParticleField::Kind::vectors,
+             integers = field.kind == ParticleField::Kind::integers;
+  const std::size_t count = field.vectors.size() + field.numbers.size() + field.integers.size();
+  text.append(field.name).append(vectors ? " 3 " : " 1 ").append(std::to_string(count));
+  text += integers ? " unsigned_int\n" : " float\n";
+  appendTriples(text, field.vectors);
+  for (const float x : field.numbers) appendBytes<std::endian::big>(text, x);
+  for (const std::uint32_t x : field.integers) appendBytes<std::endian::big>(text, x);
   text += '\n';
 }
 
@@ -128,13 +127,13 @@ std::string vtkText(const ParticleFrame& frame) {
                      " s\nBINARY\nDATASET POLYDATA\nPOINTS " + n + " float\n";
   text.reserve(text.size() + frame.positions.size() * (20 + 12 * frame.fields.size()));
   appendTriples(text, frame.positions);
-  if (frame.positions.empty()) return text;
   text += "\nVERTICES " + n + " " + std::to_string(2 * frame.positions.size()) + "\n";
   for (std::uint32_t k = 0; k < frame.positions.size(); ++k) {
     appendBytes<std::endian::big>(text, std::uint32_t{1});
     appendBytes<std::endian::big>(text, k);
   }
   text += "\nPOINT_DATA " + n + "\n";
+  if (!frame.fields.empty()) text += "FIELD FieldData " + std::to_string(frame.fields.size()) + "\n";
   for (const ParticleField& field : frame.fields) appendField(text, field);
   return text;
 }

@@ -38,6 +38,13 @@ void visitReport(SomeReport& report, const Visit& visit) {
   visit("/density_error/max", report.densityErrorMax);
   visit("/lost_particles", report.lostParticles);
   visit("/nonfinite_particles", report.nonfiniteParticles);
+  visit("/totals/started", report.startedParticles);
+  visit("/totals/emitted", report.emittedParticles);
+  visit("/left/particles", report.leftParticles);
+  visit("/left/volume", report.leftVolume);
+  visit("/drained/particles", report.drainedParticles);
+  visit("/drained/volume", report.drainedVolume);
+  visit("/drained/drains", report.drains);
   visit("/max_penetration", report.maxPenetration);
   visit("/max_speed", report.maxSpeed);
   visit("/peak_memory_bytes", report.peakMemoryBytes);
@@ -46,6 +53,7 @@ void visitReport(SomeReport& report, const Visit& visit) {
   visit("/energy/potential", report.energyPotential);
   visit("/energy/work/walls", report.energyWalls);
   visit("/energy/work/emitters", report.energyEmitters);
+  visit("/energy/work/outflow", report.energyOutflow);
   visit("/energy/work/effects", report.energyEffects);
   visit("/energy/dissipated", report.energyDissipated);
   visit("/energy/largest_gain", report.energyGain);
@@ -78,6 +86,16 @@ Json toJson(const std::vector<StageTime>& stages) {
   Json object = Json::object();
   for (const StageTime& stage : stages) object[stage.name] = toJson(1e3 * stage.seconds);
   return object;
+}
+
+Json toJson(const std::vector<DrainReport>& drains) {
+  Json array = Json::array();
+  for (const DrainReport& drain : drains)
+    array.push_back({{"particles", toJson(drain.particles)},
+                     {"volume", toJson(drain.volume)},
+                     {"times", drain.times},
+                     {"volumes", drain.volumes}});
+  return array;
 }
 
 Json toJson(const std::vector<Trouble>& trouble) {
@@ -150,6 +168,21 @@ class MemberReader {
       }
     }
   }
+  void operator()(const char* pointer, std::vector<DrainReport>& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (!found->is_array()) return wrong(pointer, "an array of objects", *found);
+    for (std::size_t k = 0; k < found->size(); ++k) {
+      const Json& entry = (*found)[k];
+      DrainReport drain;
+      if (take(entry, "particles", drain.particles) && take(entry, "volume", drain.volume) &&
+          take(entry, "times", drain.times) && take(entry, "volumes", drain.volumes)) {
+        value.push_back(std::move(drain));
+      } else {
+        wrong(childPointer(pointer, k), "an object with particles, volume, times and volumes", entry);
+      }
+    }
+  }
 
  private:
   /// Null where the key is missing or null itself.
@@ -167,6 +200,19 @@ class MemberReader {
   static bool take(const Json& object, const char* key, long& value) {
     if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) return false;
     value = object[key].get<long>();
+    return true;
+  }
+  static bool take(const Json& object, const char* key, Measure& value) {
+    if (!object.is_object() || !object.contains(key) || !object[key].is_number()) return false;
+    value = object[key].get<double>();
+    return true;
+  }
+  static bool take(const Json& object, const char* key, std::vector<double>& values) {
+    if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return false;
+    for (const Json& entry : object[key]) {
+      if (!entry.is_number()) return false;
+      values.push_back(entry.get<double>());
+    }
     return true;
   }
   void wrong(std::string_view pointer, const std::string& expected, const Json& found) const {
@@ -217,10 +263,31 @@ void reportEnergy(const EnergyBalance& energy, double mass, Report& report) {
   report.energyPotential = mass * energy.potential;
   report.energyWalls = mass * energy.walls;
   report.energyEmitters = mass * energy.emitters;
+  report.energyOutflow = mass * energy.outflow;
   report.energyEffects = mass * energy.effects;
   report.energyDissipated = -mass * energy.solver;
   report.energyGain = energy.mostGained;
   report.energyStored = energy.stored;
+}
+
+/// `volume` of a particle (m^3).
+void reportFluid(const FluidBalance& fluid, double volume, Report& report) {
+  const auto volumeOf = [&](std::int64_t particles) { return volume * static_cast<double>(particles); };
+  report.startedParticles = static_cast<double>(fluid.started);
+  report.emittedParticles = static_cast<double>(fluid.emitted);
+  report.leftParticles = static_cast<double>(fluid.left);
+  report.leftVolume = volumeOf(fluid.left);
+  report.drainedParticles = static_cast<double>(fluid.drained());
+  report.drainedVolume = volumeOf(fluid.drained());
+  for (const DrainTally& drain : fluid.drains) {
+    DrainReport& taken = report.drains.emplace_back();
+    taken.particles = static_cast<double>(drain.particles);
+    taken.volume = volumeOf(drain.particles);
+    for (const DrainSample& sample : drain.history) {
+      taken.times.push_back(sample.time);
+      taken.volumes.push_back(volumeOf(sample.particles));
+    }
+  }
 }
 
 /// The value that a fraction `q` of all values does not exceed (nearest rank).
@@ -272,7 +339,7 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   for (const StageTime& stage : run.stages.stages())
     report.stages.push_back({stage.name, stage.seconds / std::max(steps, 1.0)});
   report.nanosecondsPerParticleIteration =
-      ratio(1e9 * iterationSeconds(run.stages), particles * run.iterationSum);
+      ratio(1e9 * iterationSeconds(run.stages), run.particleIterationSum);
   report.iterationsMean = ratio(run.iterationSum, steps);
   report.iterationsMax = run.iterationMax;
   report.densityErrorMean = ratio(run.densityErrorSum, steps);
@@ -283,7 +350,9 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   report.maxSpeed = run.maxSpeed;
   report.peakMemoryBytes = peakMemory();
   const double spacing = simulation.scene().particleSpacing;
-  reportEnergy(run.energy, simulation.settings().solver.restDensity * spacing * spacing * spacing, report);
+  const double volume = spacing * spacing * spacing;
+  reportFluid(run.fluid, volume, report);
+  reportEnergy(run.energy, simulation.settings().solver.restDensity * volume, report);
   report.trouble = run.trouble;
   report.settled = settled;
   return report;

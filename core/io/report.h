@@ -21,6 +21,12 @@ namespace migiwa {
 /// A number that is null in the file where there is nothing to measure, or where it is not finite.
 using Measure = std::optional<double>;
 
+/// What a drain has taken over time.
+struct DrainReport {
+  Measure particles, volume;           ///< (m^3)
+  std::vector<double> times, volumes;  ///< taken by that time (s, m^3)
+};
+
 struct Report {
   std::string scene;                   ///< the scene file as it was given
   std::vector<std::string> overrides;  ///< `/json/pointer=VALUE`, in order
@@ -33,12 +39,15 @@ struct Report {
   Measure iterationsMean, iterationsMax;
   Measure densityErrorMean, densityErrorMax;
   Measure lostParticles, nonfiniteParticles;
-  Measure maxPenetration;   ///< (m)
-  Measure maxSpeed;         ///< (m/s)
-  Measure peakMemoryBytes;  ///< of the whole program
+  /// started + emitted = particles + left + drained; the lost ones are among the particles.
+  Measure startedParticles, emittedParticles, leftParticles, leftVolume, drainedParticles, drainedVolume;
+  std::vector<DrainReport> drains;  ///< in the order of the scene
+  Measure maxPenetration;           ///< (m)
+  Measure maxSpeed;                 ///< (m/s)
+  Measure peakMemoryBytes;          ///< of the whole program
   /// Energies (J): at the start and at the end, what was given since, and what the solver took.
-  Measure energyStart, energyKinetic, energyPotential, energyWalls, energyEmitters, energyEffects,
-      energyDissipated;
+  Measure energyStart, energyKinetic, energyPotential, energyWalls, energyEmitters, energyOutflow,
+      energyEffects, energyDissipated;
   Measure energyGain;    ///< the most that the solver had ever added, over the mass (J/kg)
   Measure energyStored;  ///< in the density errors of the start, over the mass (J/kg)
   std::vector<Trouble> trouble;

@@ -95,6 +95,55 @@ void describeEmitters(Visitor& visitor, Visited<Visitor, Scene>& scene) {
 }
 
 template <class Visitor>
+void describeDrains(Visitor& visitor, Visited<Visitor, Scene>& scene) {
+  const double spacing = visitor.valid({"particle_spacing"}) ? scene.particleSpacing : 0;
+  auto& drains = scene.drains;
+  visitor.list("drains", drains.size(), {"", "Regions that take fluid away while the simulation runs."},
+               [&](auto& fields, std::size_t at) {
+                 if constexpr (Visitor::kChanges) {
+                   if (at >= drains.size()) drains.emplace_back();
+                   drains[at].describe(fields, spacing);
+                 } else {
+                   drains[at].describe(fields);
+                 }
+               });
+}
+
+template <class Visitor>
+void describeDomain(Visitor& visitor, Visited<Visitor, Domain>& domain) {
+  visitor.object(
+      "bounds",
+      {"",
+       "Particles that leave this box are removed and counted; left out: ten diagonals of the scene beyond "
+       "its fluid and walls, and everywhere in a scene without walls."},
+      [&](auto& fields) {
+        fields.vector("min", domain.min, {"m", "Corner with the smallest coordinates.", Presence::required});
+        fields.vector("max", domain.max, {"m", "Corner with the largest coordinates.", Presence::required});
+        if (fields.valid({"min", "max"}) && (domain.max.array() <= domain.min.array()).any())
+          fields.fault("max",
+                       "expected every coordinate to be larger than that of min, found one that is not");
+      },
+      &domain.given);
+}
+
+/// A source of which nothing would be there after a step.
+void warnOfFluidOutside(FieldVisitor& visitor, const Scene& scene) {
+  if (!scene.domain.given || !visitor.valid({"bounds", "fluid", "emitters"})) return;
+  const Bounds domain = scene.domainBounds();
+  const auto outside = [&](const Bounds& own) {
+    return !own.empty() &&
+           ((own.max.array() < domain.min.array()).any() || (own.min.array() > domain.max.array()).any());
+  };
+  for (std::size_t k = 0; k < scene.fluid.size(); ++k)
+    if (outside(scene.fluid[k]->bounds()))
+      visitor.warning("bounds", "fluid/" + std::to_string(k) + " lies outside and leaves at once");
+  for (std::size_t k = 0; k < scene.emitters.size(); ++k)
+    if (outside(scene.emitters[k].bounds()))
+      visitor.warning("bounds",
+                      "emitters/" + std::to_string(k) + " lies outside: what it gives leaves at once");
+}
+
+template <class Visitor>
 void describeMotion(Visitor& visitor, Visited<Visitor, std::optional<Motion>>& motion) {
   bool present = motion.has_value();
   visitor.object(
@@ -259,6 +308,9 @@ bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   visitor.vector("gravity", scene.gravity, {"m/s^2", "Acceleration of all of the fluid."});
   describeFluid(visitor, scene);
   describeEmitters(visitor, scene);
+  describeDrains(visitor, scene);
+  describeDomain(visitor, scene.domain);
+  if constexpr (Visitor::kChanges) warnOfFluidOutside(visitor, scene);
   visitor.object("boundary", {"", "The walls and how the density is corrected at them."},
                  [&](auto& fields) { describeBoundary(fields, scene); });
   visitor.object("solver", {"", "The constraint solver."},

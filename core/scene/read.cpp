@@ -268,7 +268,9 @@ void checkWhole(const Scene& scene, FaultList& faults) {
       faults.add("/solver/time_step", *fault);
   if (faults.anyBelow("/fluid") || faults.anyBelow("/emitters") || faults.anyBelow(kSpacing)) return;
   const double spacing = scene.particleSpacing;
-  const auto count = [&](double other) { return particleCount(scene, other, scene.duration); };
+  // With drains nobody knows how many of those that emitters give there are at once.
+  const double counted = scene.drains.empty() ? scene.duration : 0;
+  const auto count = [&](double other) { return particleCount(scene, other, counted); };
   if (const auto fault = tooManyParticles(count, spacing, availableMemory())) faults.add(kSpacing, *fault);
 
   Bounds fluid;

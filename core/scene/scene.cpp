@@ -21,6 +21,16 @@ Bounds Scene::bounds() const {
   return bounds;
 }
 
+Bounds Scene::domainBounds() const {
+  if (domain.given) {
+    Bounds given;
+    given.min = domain.min, given.max = domain.max;
+    return given;
+  }
+  const Bounds extent = bounds();
+  return surfaces.empty() || extent.empty() ? Bounds() : extent.grown(10 * extent.size().norm());
+}
+
 Camera defaultCamera(const Bounds& bounds, const Vec3d& gravity) {
   Camera camera;
   if (gravity.norm() > 0) camera.up = Vec3d::Zero() - gravity.normalized();  // 0 - 0 has no sign to show
@@ -159,7 +169,9 @@ std::optional<std::string> tooLateAnEnd(const Scene& scene, double until, double
          << ", found " << until << " s, which takes " << steps << "; a longer time_step takes fewer";
     return text.str();
   }
-  const double particles = particleCount(scene, scene.particleSpacing, until), most = mostParticles(memory);
+  // What drains take nobody knows beforehand: there emitters end where memory does, and say so.
+  const double counted = scene.drains.empty() ? until : 0;
+  const double particles = particleCount(scene, scene.particleSpacing, counted), most = mostParticles(memory);
   if (particles <= most) return std::nullopt;
   text << "expected an end by which there are at most " << most << " particles, found " << until
        << " s, by which emitters make them " << particles;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scene/drain.h"
 #include "core/scene/sources.h"
 #include "core/solver/effect.h"
 #include "core/solver/parameters.h"
@@ -59,6 +60,13 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
+/// Where particles are followed; what leaves it is removed and counted.
+struct Domain {
+  bool given = false;         ///< else it follows from the scene, see Scene::domainBounds()
+  Vec3d min = Vec3d::Zero();  ///< (unit: m)
+  Vec3d max = Vec3d::Ones();  ///< (unit: m)
+};
+
 struct Scene {
   std::filesystem::path file;  ///< where it was read from
   std::string name;
@@ -68,6 +76,8 @@ struct Scene {
   Vec3d gravity{0, -9.81, 0};     ///< (unit: m/s^2)
   std::vector<std::shared_ptr<const FluidSource>> fluid;
   std::vector<Emitter> emitters;
+  std::vector<Drain> drains;
+  Domain domain;
   std::vector<std::shared_ptr<const Surface>> surfaces;
   BoundaryParameters boundary;
   SolverParameters solver;
@@ -79,6 +89,10 @@ struct Scene {
   double supportRadius() const { return solver.supportRatio * particleSpacing; }
   /// Extent of fluid and finite walls, wherever they are within the duration.
   Bounds bounds() const;
+  /// Where particles are followed: what `bounds` says, else ten of the scene's diagonals beyond its extent,
+  /// far enough for any splash to come back. Empty, which is everywhere, where that has no walls or no
+  /// extent.
+  Bounds domainBounds() const;
 };
 
 // Whether a scene's particles have room on this machine.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/files.h"
+#include "core/base/progress.h"
 #include "core/simulation/frame_view.h"
 
 namespace migiwa {
@@ -31,7 +32,10 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
     centers.clear();
     source.fill(scene.particleSpacing, centers);
     const std::size_t before = particles.size();
+    constexpr std::size_t kTold = 4096;
     for (const Vec3d& center : centers) {
+      if (const auto done = static_cast<std::size_t>(&center - centers.data()); done % kTold == 0)
+        Activity::pulse(static_cast<double>(done) / static_cast<double>(centers.size()));
       const Vec3f p = center.cast<float>();
       if (source.trim && boundary.distance(p) < margin) continue;
       particles.position.emplace_back(p);
@@ -46,6 +50,9 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
 }
 
 namespace {
+
+/// Particles that there may ever be, those that are gone included: ids have 32 bits.
+constexpr std::int64_t kMostIds = std::int64_t{1} << 32;
 
 /// Makes room for `size` particles and some more, so that layers do not move the buffers one by one. False
 /// where that memory cannot be had.
@@ -98,13 +105,14 @@ Emission::Emission(Scene& scene, const Boundary& boundary, double most)
   }
 }
 
-void Emission::addLayer(const Mouth& mouth, double age, StepState& state) {
+void Emission::addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state) {
+  std::int64_t id = firstId;
   Particles& particles = state.particles;
   const bool slots = state.wallSlot.size() == particles.size();
   for (const Vec3d& place : mouth.layer.places) {
     particles.position.emplace_back(Vec3f((place + age * mouth.velocity).cast<float>()));
     particles.velocity.emplace_back(Vec3f(mouth.velocity.cast<float>()));
-    particles.id.push_back(static_cast<std::uint32_t>(particles.id.size()));
+    particles.id.push_back(static_cast<std::uint32_t>(id++));
     if (slots) state.wallSlot.push_back(FluidState::kNoWall);
   }
 }
@@ -137,9 +145,16 @@ void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
                             " particles beside " + std::to_string(state.particles.size()));
         break;
       }
-      addLayer(mouth, time - leaves, state);
+      if (statistics.fluid.made() + layer > kMostIds) {
+        statistics.note("particle_limit", statistics.steps,
+                        "/emitters/" + std::to_string(k) + " gives nothing more: all " +
+                            std::to_string(kMostIds) + " ids that tell particles apart are used");
+        break;
+      }
+      addLayer(mouth, time - leaves, statistics.fluid.made(), state);
       ++given.layers;
       given.particles += layer;
+      statistics.fluid.emitted += layer;
     }
   }
 }

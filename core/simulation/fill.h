@@ -1,4 +1,4 @@
-// Particles that a simulation starts with, and those that emitters add.
+// Particles that a simulation starts with, those that emitters add, and those that leave.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/drain.h"
 #include "core/scene/scene.h"
 #include "core/simulation/state.h"
 #include "core/simulation/statistics.h"
+#include "core/solver/energy.h"
 #include "core/solver/state.h"
 #include "core/walls/boundary.h"
 
@@ -35,9 +37,9 @@ class Emission {
   Emission(Scene& scene, const Boundary& boundary, double most = kLargestCount);
 
   bool empty() const { return mouths_.empty(); }
-  /// Adds the layers that have left by `time` (s), where they are by then. Ids go on from the number of
-  /// particles. An emitter that reaches its limit, or that of the simulation or its memory, gives nothing
-  /// more, and is noted as trouble.
+  /// Adds the layers that have left by `time` (s), where they are by then, and counts them. Ids go on from
+  /// the number of particles that there ever were, so that none comes twice. An emitter that reaches its
+  /// limit, or that of the simulation or its memory, gives nothing more, and is noted as trouble.
   void emit(double time, StepState& state, RunStatistics& statistics);
   /// The largest speed (m/s) at a mouth that is open between `from` and `to` (s).
   double largestSpeed(double from, double to) const;
@@ -52,11 +54,38 @@ class Emission {
     Vec3d velocity;   ///< (m/s)
     double interval;  ///< from layer to layer (s)
   };
-  static void addLayer(const Mouth& mouth, double age, StepState& state);
+  static void addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state);
 
   std::vector<Mouth> mouths_;
   std::vector<EmitterState> given_;
   double most_;
+};
+
+// What leaves the fluid while it is simulated: through drains, and out of the scene's bounds.
+
+class Outflow {
+ public:
+  /// Keeps no reference to the scene.
+  explicit Outflow(const Scene& scene);
+
+  /// Whether a drain is open at `time` (s).
+  bool anyOpen(double time) const;
+  /// Before a step, removes the particles that are in a drain that is open at `time` (s), the first of
+  /// several, and those that are out of `domain`, unless that is empty. The others keep their order and what
+  /// is known of them. Counts them, with their energy, and returns the sums of it; `centre` as HealthLimits
+  /// has it.
+  EnergySums remove(double time, const Bounds& domain, const Vec3f& centre, StepState& state,
+                    RunStatistics& statistics) const;
+
+ private:
+  struct Outlet {
+    Drain drain;
+    DrainRegion region;
+  };
+  /// Number of the drain that takes p, counted from 0; kStays or kLeaves.
+  int fateOf(const Vec3d& p, double time, const Bounds& domain) const;
+
+  std::vector<Outlet> outlets_;
 };
 
 // Other walls in the place of those that a simulation has: for as long as it is not certain that they stay.

@@ -1,24 +1,21 @@
 #include "core/simulation/simulation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
-#include "core/simulation/fill.h"
+#include "core/simulation/run_state.h"
 #include "core/simulation/state.h"
-#include "core/simulation/statistics.h"
 #include "core/solver/parameters.h"
-#include "core/solver/step.h"
-#include "core/walls/boundary.h"
 #include "core/walls/gridded.h"
 
 namespace migiwa {
@@ -26,58 +23,10 @@ namespace migiwa {
 namespace {
 
 Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
+  const Activity activity("measuring distances to the walls");
   return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
                                     scene.file.string() + ":/boundary/surfaces"));
 }
-
-}  // namespace
-
-struct Simulation::State {
-  State(Scene theScene, int threads, Guards guards)
-      : scene(std::move(theScene)),
-        pool(threads),
-        boundary(wallsOf(scene, pool)),
-        step(pool, boundary),
-        emission(scene, boundary) {
-    step.guards = guards == Guards::on;
-  }
-
-  /// Takes settings over wholly, or throws and stays as it is.
-  void configure(const Settings& settings);
-  void advanceSubstep(double start, double dt);
-  EnergySums emit(double start);
-  void partCrowded();
-  void takeBackExcess(const EnergySums& before, double dt);
-  void refuseNotFinite();
-  void refuseOverConstrained(const OverConstrained& overConstrained, double start);
-  void moveWalls(double before, double now);
-  double largestSpeed(double start, double span) const;
-  std::uint64_t hash() {
-    return migiwa::stateHash(step.particles.id, step.particles.position, step.particles.velocity, pool);
-  }
-  /// What a picture says of the frame, but for wall times.
-  void describeFrame();
-
-  Scene scene;
-  ThreadPool pool;
-  Boundary boundary;
-  StepState step;
-  Emission emission;
-  PickedGamma gamma;
-  EffectPipeline effects;
-  RunStatistics statistics;
-  Health health;
-  HealthLimits limits;
-  FrameInfo info;
-  std::shared_ptr<const WallDrawing> drawnWalls;  ///< as they are now; null: nobody has asked
-  std::vector<std::uint32_t> savedNeighbours;     ///< counts that came with a save, until the next step
-  bool stepTaken = true;                          ///< false: the last step was refused
-  std::vector<float> pressure;                    ///< (Pa) of the last step; empty: nobody watches
-  long frame = 0;
-  double time = 0;
-};
-
-namespace {
 
 /// Of the fluid along gravity (m); 0 without either.
 double heightOf(const StepState& state) {
@@ -91,10 +40,17 @@ double heightOf(const StepState& state) {
   return static_cast<double>(highest - lowest);
 }
 
-/// Substeps a frame has at most: a run that needs more is told so instead of standing still.
-constexpr long kMostSubsteps = 1000;
-
 }  // namespace
+
+Simulation::State::State(Scene theScene, int threads, Guards guards)
+    : scene(std::move(theScene)),
+      pool(threads),
+      boundary(wallsOf(scene, pool)),
+      step(pool, boundary),
+      emission(scene, boundary),
+      outflow(scene) {
+  step.guards = guards == Guards::on;
+}
 
 /// Whatever may fail is made first, beside what is in force.
 void Simulation::State::configure(const Settings& settings) {
@@ -158,12 +114,17 @@ void Simulation::State::configure(const Settings& settings) {
 Simulation::Simulation(Scene scene, int threads, Guards guards)
     : state_(std::make_unique<State>(std::move(scene), threads, guards)) {
   State& state = *state_;
+  std::optional<Activity> activity(std::in_place, "filling the sources");
   fillScene(state.scene, state.boundary, state.step.particles);
+  state.statistics.fluid.started = static_cast<std::int64_t>(state.step.particles.size());
+  state.statistics.fluid.drains.resize(state.scene.drains.size());
+  activity.reset();
   state.configure(settings());
   state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
   // The reader has asked before there were grids of the walls.
   requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
                 state.scene.file.string() + ":/particle_spacing");
+  activity.emplace("looking at the start");
   if (const long inside = state.step.guards ? stabilise(state.step) : 0; inside > 0) {
     state.statistics.note("started_in_wall", 0,
                           std::to_string(inside) +
@@ -185,187 +146,6 @@ Simulation::Simulation(Scene scene, int threads, Guards guards)
 }
 
 Simulation::~Simulation() = default;
-
-void Simulation::State::describeFrame() {
-  info.time = time;
-  info.steps = statistics.steps;
-  info.iterations = step.iterations;
-  info.errors = statistics.steps > 0 ? step.errors : std::vector<IterationError>();
-  info.stateHash = hash();
-  info.energy = statistics.energy.history;
-  step.pressure.pressures(step, pressure);
-}
-
-/// Walls are where they end up, having been at their places of `before`.
-void Simulation::State::moveWalls(double before, double now) {
-  boundary.moveTo(before, now);
-  drawnWalls.reset();
-  if (gamma.method) gamma.method->wallsMoved();
-  // What goes along with the walls is not lost.
-  for (const auto& wall : boundary.moving()) limits.scene.include(wall->bounds());
-}
-
-/// How fast (m/s) particles and walls may come towards each other between `start` and `start + span` (s).
-double Simulation::State::largestSpeed(double start, double span) const {
-  const double fluid = static_cast<double>(health.maxSpeed) + scene.gravity.norm() * span;
-  double wall = 0;
-  for (const auto& moving : boundary.moving()) {
-    const Bounds own = moving->rest()->bounds();
-    wall = std::max(wall, migiwa::largestSpeed(moving->motion(), own.empty() ? scene.bounds() : own, start,
-                                               start + span));
-  }
-  return std::max(fluid, emission.largestSpeed(start, start + span)) + wall;
-}
-
-/// Returns the sums of what has come in.
-EnergySums Simulation::State::emit(double start) {
-  const std::size_t first = step.particles.size();
-  emission.emit(start, step, statistics);
-  const EnergySums given = energySums(step.particles, first, limits.centre);
-  statistics.energy.emitters += given.kinetic + given.potential(scene.gravity);
-  return given;
-}
-
-/// A next step would undo what this one has left in one go, the faster the shorter it is: then the CFL rule
-/// makes the steps shorter still, and energy grows without bound. Velocities, and so momentum, stay.
-void Simulation::State::partCrowded() {
-  statistics.note("crowded", statistics.steps + 1,
-                  "a step left density " + std::to_string(1 + step.errors.back().max) +
-                      " of that at rest; particles were moved apart without gaining speed");
-  const std::vector<IterationError> errors = step.errors;
-  const int iterations = step.iterations;
-  relax(step);
-  step.errors = errors, step.iterations = iterations;
-}
-
-/// Energy never grows without a source, see holdEnergy().
-void Simulation::State::takeBackExcess(const EnergySums& before, double dt) {
-  // Velocities are differences of positions, which are rounded.
-  const double rounding = 0x1p-24 * limits.farthest / dt * static_cast<double>(health.maxSpeed);
-  const double excess = statistics.energy.excess(step, before, health.energy, dt, rounding);
-  if (excess <= 0) return;
-  const auto count = static_cast<double>(health.energy.particles);
-  if (const HeldEnergy held = holdEnergy(step, effects, excess); held.particles > 0) {
-    statistics.note("energy_held", statistics.steps + 1,
-                    "a step would have added " + std::to_string(excess / count) + " J/kg from nothing; " +
-                        std::to_string(held.taken / count) + " were taken back from " +
-                        std::to_string(held.particles) + " of " + std::to_string(health.energy.particles) +
-                        " particles, where they were gained");
-    health = inspect(step, limits);
-  }
-  if (const double left = statistics.energy.excess(step, before, health.energy, dt, rounding); left > 0) {
-    statistics.note("energy_gained", statistics.steps + 1,
-                    "a step has added " + std::to_string(left / count) +
-                        " J/kg from nothing, which could not be taken back");
-  }
-}
-
-/// The state stays the last good one, and the simulation stops there.
-void Simulation::State::refuseNotFinite() {
-  const StepFault fault = findFault(step, effects);
-  std::string neighbours;
-  constexpr std::size_t kNamed = 8;
-  for (std::size_t k = 0; k < std::min(fault.neighbours.size(), kNamed); ++k)
-    neighbours += (k > 0 ? ", " : "") + std::to_string(fault.neighbours[k]);
-  if (fault.neighbours.size() > kNamed) neighbours += ", ...";
-  statistics.nonfiniteParticles = std::max(1L, fault.particles);
-  statistics.note("nonfinite", statistics.steps + 1,
-                  std::to_string(fault.particles) + " particles are not finite after the stage \"" +
-                      fault.stage + "\", particle " + std::to_string(fault.particle) +
-                      " among them, whose neighbours are " + (neighbours.empty() ? "none" : neighbours) +
-                      "; the step was not taken");
-}
-
-/// The same where walls leave no room: they go back, too.
-void Simulation::State::refuseOverConstrained(const OverConstrained& overConstrained, double start) {
-  std::ostringstream detail;
-  detail << "walls leave the fluid less room than it needs: however long it is solved for, its density stays "
-         << 1 + overConstrained.largest << " of that at rest at (" << overConstrained.place.x() << ", "
-         << overConstrained.place.y() << ", " << overConstrained.place.z() << ") m, and "
-         << 1 + overConstrained.mean << " in the mean of all, after " << start
-         << " s; the step was not taken. Let the fluid out, stop the moving wall earlier, or start "
-         << "or emit less fluid";
-  statistics.overConstrained = true;
-  statistics.note("squeezed", statistics.steps + 1, detail.str());
-  if (boundary.moves()) moveWalls(start, start);
-  prepareFields(step);
-}
-
-void Simulation::State::advanceSubstep(double start, double dt) {
-  const auto began = std::chrono::steady_clock::now();
-  step.timeStep = static_cast<float>(dt);
-  static_cast<StepRecord&>(step).clear();
-  savedNeighbours.clear();
-  if (boundary.moves()) step.times.time("move_walls", [&] { moveWalls(start, start + dt); });
-  EnergySums before = health.energy;
-  statistics.energy.beginStep(step, before.particles, dt, statistics.steps == 0);
-  if (!emission.empty()) step.times.time("emitters", [&] { before += emit(start); });
-  const StepRefusal refusal = advanceStep(step, effects);
-  stepTaken = !refusal.any();
-  if (refusal.notFinite) return refuseNotFinite();
-  if (refusal.overConstrained.found) return refuseOverConstrained(refusal.overConstrained, start);
-  step.times.time("check", [&] {
-    health = inspect(step, limits);
-    if (step.guards) takeBackExcess(before, dt);
-  });
-  if (step.guards && step.errors.back().max > kCrowded) {
-    step.times.time("relax", [&] { partCrowded(); });
-    health = inspect(step, limits);
-  }
-  step.times.time("check", [&] { statistics.energy.record(step, before, health.energy, dt, start + dt); });
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  statistics.record(step, health, dt, seconds);
-}
-
-void Simulation::advanceFrame() {
-  State& state = *state_;
-  if (stopped()) return;
-  const SolverParameters& parameters = state.scene.solver;
-  const double frameStep = parameters.timeStep;
-  const double longest = frameStep / parameters.substeps;
-  const double reach = parameters.cfl * static_cast<double>(state.step.supportRadius);
-
-  StageTimes frameTimes;
-  double wallSeconds = 0;
-  double left = frameStep;
-  long taken = 0;
-  while (left > 1e-9 * frameStep && !stopped()) {
-    const double start = state.time + (frameStep - left);
-    double step = longest;
-    if (parameters.cfl > 0) {
-      const double speed = state.largestSpeed(start, longest);
-      if (speed * step > reach) step = reach / speed;
-      step = std::min(step, state.effects.longestStep(state.step));
-    }
-    // In doubles: a step that the CFL rule makes short enough has more parts than a whole number holds.
-    const double wanted = std::ceil(left / step - 1e-6), most = static_cast<double>(kMostSubsteps - taken);
-    double parts = std::max(wanted, 1.0);
-    if (!(wanted <= most)) {
-      state.statistics.note("cfl_not_met", state.statistics.steps,
-                            "the fastest particle would need more than " + std::to_string(kMostSubsteps) +
-                                " substeps a frame; a smaller time_step helps");
-      parts = std::max(most, 1.0);
-    }
-    const double dt = left / parts;
-    state.advanceSubstep(start, dt);
-    if (!state.stepTaken) {
-      // What is left is the state of the last good step, which may be within the frame.
-      state.time = start;
-      state.describeFrame();
-      return;
-    }
-    left -= dt;
-    ++taken;
-    frameTimes.add(state.step.times);
-    wallSeconds += static_cast<double>(state.statistics.stepSeconds.back());
-  }
-  ++state.frame;
-  state.time += frameStep;
-  state.statistics.simulatedSeconds = state.time;
-  state.info.stages = frameTimes;
-  state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
-  state.describeFrame();
-}
 
 long Simulation::frameAt(double time) const {
   return std::lround(std::clamp(time / state_->scene.solver.timeStep, -0x1p62, 0x1p62));
@@ -450,6 +230,7 @@ void Simulation::visitState(StateVisitor& visitor) {
   visitor.number("/time", state.time);
   visitor.integer("/iterations", state.step.iterations);
   visitor.number("/max_speed", state.health.maxSpeed);  // the CFL rule goes by it
+  visitor.number("/walls_gave", state.wallsGave);
   state.statistics.visit(visitor);
   std::vector<std::uint32_t> neighbours;
   if (!visitor.reading()) {

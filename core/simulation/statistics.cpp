@@ -32,6 +32,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   stepSeconds.push_back(static_cast<float>(seconds));
   stages.add(state.times);
   iterationSum += state.iterations;
+  particleIterationSum += static_cast<double>(state.particles.size()) * state.iterations;
   iterationMax = std::max(iterationMax, state.iterations);
   const IterationError& error = state.errors.back();
   densityErrorSum += error.mean;
@@ -66,9 +67,13 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
              std::to_string(health.firstBad) + " among them");
   }
   if (health.lost > 0) {
-    note("lost_particle", steps,
-         std::to_string(health.lost) + " particles left the scene, particle " +
-             std::to_string(health.firstBad) + " among them");
+    const long thrown = health.thrown, past = health.lost - thrown;
+    std::string what;
+    if (past > 0) what = std::to_string(past) + " particles are past a wall by more than a spacing";
+    if (thrown > 0)
+      what += (past > 0 ? ", " : "") + std::to_string(thrown) +
+              " particles left the scene faster than anything in it could have made them";
+    note("lost_particle", steps, what + "; particle " + std::to_string(health.firstBad) + " is among them");
   }
 }
 
@@ -77,12 +82,14 @@ void RunStatistics::visit(StateVisitor& visitor) {
   visitor.number("/statistics/simulated_s", simulatedSeconds);
   visitor.number("/statistics/wall_s", wallSeconds);
   visitor.number("/statistics/iterations/sum", iterationSum);
+  visitor.number("/statistics/iterations/with_particles", particleIterationSum);
   visitor.integer("/statistics/iterations/max", iterationMax);
   visitor.number("/statistics/density_error/sum", densityErrorSum);
   visitor.number("/statistics/density_error/max", densityErrorMax);
   visitor.number("/statistics/max_penetration", maxPenetration);
   visitor.number("/statistics/max_speed", maxSpeed);
   visitor.array("statistics/step_seconds", stepSeconds);
+  fluid.visit(visitor);
   energy.visit(visitor);
 
   std::vector<StageTime> times = stages.stages();
@@ -112,16 +119,24 @@ void RunStatistics::visit(StateVisitor& visitor) {
 HealthLimits healthLimits(const Scene& scene) {
   HealthLimits limits;
   limits.mostPenetration = scene.particleSpacing;
+  limits.domain = scene.domainBounds();
+  limits.domainGrows = !scene.domain.given;
+  limits.gravity = scene.gravity;
+  limits.slow = scene.particleSpacing / scene.solver.timeStep * scene.solver.substeps;
+  for (const auto& source : scene.fluid) limits.given = std::max(limits.given, source->velocity.norm());
+  for (const Emitter& emitter : scene.emitters) limits.given = std::max(limits.given, emitter.mouthSpeed());
   if (const Bounds bounds = scene.bounds(); !bounds.empty()) {
     limits.centre = bounds.center().cast<float>();
     limits.farthest = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).norm();
-  }
-  // Far enough for any splash to come back, near enough that what fell through a hole is found.
-  if (!scene.surfaces.empty()) {
-    const Bounds bounds = scene.bounds();
-    if (!bounds.empty()) limits.scene = bounds.grown(10 * bounds.size().norm());
+    limits.top = scene.gravity.dot(bounds.center()) - 0.5 * scene.gravity.cwiseAbs().dot(bounds.size());
   }
   return limits;
+}
+
+double HealthLimits::fastest(const Vec3d& p) const {
+  constexpr double kJets = 4;
+  const double fallen = std::max(0.0, gravity.dot(p) - top);
+  return kJets * std::sqrt(given * given + 2 * fallen) + slow;
 }
 
 Health inspect(const StepState& state, const HealthLimits& limits) {
@@ -130,6 +145,7 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
       state.pool, particles.size(), Health{},
       [&](std::size_t begin, std::size_t end) {
         Health part;
+        float fastest2 = 0, farthest2 = 0;
         for (std::size_t i = begin; i < end; ++i) {
           const Vec3f position = particles.position[i].xyz(), velocity = particles.velocity[i].xyz();
           if (!position.allFinite() || !velocity.allFinite()) {
@@ -137,25 +153,37 @@ Health inspect(const StepState& state, const HealthLimits& limits) {
             part.firstBad = particles.id[i];
             continue;
           }
-          part.maxSpeed = std::max(part.maxSpeed, velocity.norm());
+          fastest2 = std::max(fastest2, velocity.squaredNorm());
+          farthest2 = std::max(farthest2, position.squaredNorm());
           part.energy.add(position, velocity, limits.centre);
           const bool clear = particles.position[i].w > 0;
           const float penetration = clear ? 0 : -state.boundary.distance(position);
           part.maxPenetration = std::max(part.maxPenetration, penetration);
-          const bool out = !limits.scene.empty() && !limits.scene.contains(position.cast<double>());
-          if (out || static_cast<double>(penetration) > limits.mostPenetration) {
+          bool lost = static_cast<double>(penetration) > limits.mostPenetration;
+          const Vec3d place = position.cast<double>();
+          if (!limits.domain.empty() && !limits.domain.contains(place)) {
+            ++part.outside;
+            const bool thrown = !lost && static_cast<double>(velocity.norm()) > limits.fastest(place);
+            if (thrown) ++part.thrown;
+            lost = lost || thrown;
+          }
+          if (lost) {
             ++part.lost;
             part.firstBad = particles.id[i];
           }
         }
+        part.maxSpeed = std::sqrt(fastest2), part.farthest = std::sqrt(farthest2);
         return part;
       },
       [](Health a, const Health& b) {
         if (a.lost + a.nonfinite == 0) a.firstBad = b.firstBad;
         a.maxSpeed = std::max(a.maxSpeed, b.maxSpeed);
+        a.farthest = std::max(a.farthest, b.farthest);
         a.maxPenetration = std::max(a.maxPenetration, b.maxPenetration);
         a.energy += b.energy;
+        a.outside += b.outside;
         a.lost += b.lost;
+        a.thrown += b.thrown;
         a.nonfinite += b.nonfinite;
         return a;
       });
@@ -203,6 +231,11 @@ double EnergyBalance::excess(const StepState& state, const EnergySums& before, c
   return gained > most + slack ? gained - most : 0;
 }
 
+void EnergyBalance::takeOut(const EnergySums& sums, const Vec3d& gravity) {
+  outflow -= sums.kinetic + sums.potential(gravity);
+  gone += sums.particles;
+}
+
 void EnergyBalance::record(const StepState& state, const EnergySums& before, const EnergySums& now, double dt,
                            double time) {
   const Vec3d gravity = state.gravity.cast<double>();
@@ -214,23 +247,20 @@ void EnergyBalance::record(const StepState& state, const EnergySums& before, con
   const double gained = bySolver(state, before, now, dt);
   solver += gained;
   elastic = std::max(0.0, elastic - gained);
-  if (now.particles > 0) {
-    mostGained = std::max(mostGained, solver / static_cast<double>(now.particles));
-  }
+  const std::int64_t all = now.particles + gone;
+  if (all > 0) mostGained = std::max(mostGained, solver / static_cast<double>(all));
   sample(time, now.particles);
 }
 
 void EnergyBalance::sample(double time, long particles) {
-  if (untilSample_-- > 0) return;
-  if (history.size() == kMostSamples) {
-    // Twice as far apart from now on: every second one stays.
-    for (std::size_t k = 0; 2 * k < history.size(); ++k) history[k] = history[2 * k];
-    history.resize(kMostSamples / 2);
-    stride_ *= 2;
-  }
-  untilSample_ = stride_ - 1;
   const double share = particles > 0 ? 1 / static_cast<double>(particles) : 0;
-  history.push_back({time, kinetic * share, potential * share, (start + walls + emitters + effects) * share});
+  const double source = start + walls + emitters + outflow + effects;
+  thinning_.add(history, {time, kinetic * share, potential * share, source * share});
+}
+
+void Thinning::visit(StateVisitor& visitor, const std::string& name) {
+  visitor.integer(name + "/stride", stride_);
+  visitor.integer(name + "/until_sample", untilSample_);
 }
 
 void EnergyBalance::visit(StateVisitor& visitor) {
@@ -239,16 +269,15 @@ void EnergyBalance::visit(StateVisitor& visitor) {
   visitor.number("/energy/potential", potential);
   visitor.number("/energy/walls", walls);
   visitor.number("/energy/emitters", emitters);
+  visitor.number("/energy/outflow", outflow);
   visitor.number("/energy/effects", effects);
   visitor.number("/energy/solver", solver);
   visitor.number("/energy/most_gained", mostGained);
   visitor.number("/energy/stored", stored);
   visitor.number("/energy/head", head);
   visitor.number("/energy/elastic", elastic);
-  std::int64_t stride = stride_, until = untilSample_;
-  visitor.integer("/energy/stride", stride);
-  visitor.integer("/energy/until_sample", until);
-  stride_ = stride, untilSample_ = until;
+  visitor.integer("/energy/gone", gone);
+  thinning_.visit(visitor, "/energy");
   visitor.array("energy/history", history);
 }
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <string>
 
 #include "core/base/math.h"
+#include "core/base/progress.h"
 #include "core/slim/node.h"
 #include "core/slim/points.h"
 
@@ -228,13 +230,16 @@ SlimStatistics measureSlim(const SlimModel& model, const ImportedShape& shape, T
       model, shape.isMesh() ? samplePoints(shape.mesh, kMeasuredPoints, 2) : shape.cloud.points, pool);
 }
 
-SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool,
-                  const std::function<void(double)>& progress) {
+SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool) {
   if (!(options.tolerance > 0) && options.nodes <= 0 && !(options.radius > 0))
     options.tolerance = defaultSlimTolerance(shape.bounds());
   const OrientedPoints points = fitPoints(shape, options.nodes);
   SlimData data;
-  data.nodes = fitSlim(points, options, pool, progress);
+  {
+    Activity activity("fitting a SLIM surface to " + std::to_string(points.points.size()) + " points");
+    data.nodes = fitSlim(points, options, pool, [&](double part) { activity.reach(part); });
+  }
+  const Activity activity("measuring the SLIM surface");
   data.hierarchy = mergeSlim(points, data.nodes, options.degree, pool);
   data.degree = options.degree;
   data.closed = shape.closed;

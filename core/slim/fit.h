@@ -83,9 +83,8 @@ struct SlimData {
 double defaultSlimTolerance(const Bounds& bounds);
 
 /// Fits a SLIM surface to the shape, and its hierarchy. With neither tolerance nor nodes in `options`, by the
-/// default tolerance.
-SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool,
-                  const std::function<void(double)>& progress = {});
+/// default tolerance. Says how far it is, see core/base/progress.h.
+SlimData fitShape(const ImportedShape& shape, SlimFitOptions options, ThreadPool& pool);
 
 /// Replaces the nodes by those of the hierarchy that the tolerance (m) allows or, if that is 0, by at most
 /// `nodes`; with both 0 they stay. Drops the hierarchy. Returns what is worth saying: nothing, or that the

@@ -31,6 +31,14 @@ EnergySums& EnergySums::operator+=(const EnergySums& other) {
   return *this;
 }
 
+EnergySums& EnergySums::operator-=(const EnergySums& other) {
+  kinetic -= other.kinetic;
+  velocity -= other.velocity;
+  place -= other.place;
+  particles -= other.particles;
+  return *this;
+}
+
 double EnergySums::halfStepOn(const Vec3d& gravity, double dt) const {
   return kinetic + 0.5 * dt * gravity.dot(velocity) +
          0.125 * dt * dt * gravity.squaredNorm() * static_cast<double>(particles) + potential(gravity);

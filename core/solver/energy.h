@@ -32,6 +32,7 @@ struct EnergySums {
     ++particles;
   }
   EnergySums& operator+=(const EnergySums& other);
+  EnergySums& operator-=(const EnergySums& other);
   double potential(const Vec3d& gravity) const { return -gravity.dot(place); }
   /// H for a step of `dt` (s).
   double halfStepOn(const Vec3d& gravity, double dt) const;

@@ -59,7 +59,7 @@ Measure wallError(const Scene& scene) {
 }  // namespace
 
 RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
-                          const std::function<void(double)>& eachFrame) {
+                          const std::function<void(const Simulation&)>& eachFrame) {
   double preparation = 0;
   const std::unique_ptr<Simulation> made = prepared(plan, run, threads, preparation);
   RunRecord record;
@@ -73,7 +73,7 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
   // Of the run alone: judging a state takes memory of its own.
   double memory = peakMemory();
   const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
-    eachFrame(simulation.time());
+    eachFrame(simulation);
     const long frame = simulation.frame();
     if (frame == firstSettled) simulation.watchPressure(true);
     if (frame > firstSettled) pressure.sample(simulation);
@@ -122,7 +122,7 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
 }
 
 void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
-               const std::function<void(double)>& eachFrame, RunRecord& record) {
+               const std::function<void(const Simulation&)>& eachFrame, RunRecord& record) {
   const std::vector<Override> overrides = plan.overrides(run);
   const Scene scene = readScene(plan.scene, overrides);
   if (runFingerprint(scene, plan.until) != record.fingerprint)
@@ -131,7 +131,7 @@ void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
                                               "another --out");
   Simulation simulation(scene, threads);
   const SettledMeasures settled = runUntil(simulation, plan.until, [&] {
-    eachFrame(simulation.time());
+    eachFrame(simulation);
     return true;
   });
   const Report report = makeReport(simulation, settled, overrides);

@@ -134,13 +134,13 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file);
 /// included.
 inline constexpr int kJudgedStates = 5;
 
-/// Takes the run's first repetition into a new record. `eachFrame` is told the simulated time (s).
+/// Takes the run's first repetition into a new record. `eachFrame` is called after every frame.
 RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
-                          const std::function<void(double)>& eachFrame);
+                          const std::function<void(const Simulation&)>& eachFrame);
 /// Takes one more repetition's time into the record. Throws InputError if it ends in another state than the
 /// first: then its time would not be that of the same run.
 void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
-               const std::function<void(double)>& eachFrame, RunRecord& record);
+               const std::function<void(const Simulation&)>& eachFrame, RunRecord& record);
 
 // study.csv: one row a run. First the columns that people script against, in this order:
 // - run: number, from 1

@@ -84,7 +84,7 @@ void EnergyWatch::look() {
   steps_ = run.steps;
   const auto count = std::max<double>(1, static_cast<double>(simulation_.view().positions.size()));
   const Range now = energyNow(meanStep);
-  const double given = (run.energy.walls + run.energy.emitters) / count;
+  const double given = (run.energy.walls + run.energy.emitters + run.energy.outflow) / count;
   gained_ = std::max(gained_,
                      now.low - (start_ * static_cast<double>(startParticles_) + halfStep_) / count - given);
   regained_ = std::max(regained_, now.low - given - lowest_);

@@ -41,5 +41,22 @@ TEST_F(SqueezeCommand, EndsWithExitCode3NamesTheTroubleAndKeepsTheLastGoodState)
   EXPECT_EQ(report()["state_hash"], stopped["state_hash"]);
 }
 
+TEST_F(SqueezeCommand, ExportsTheLastGoodFrameAndSaysTroubleOnce) {
+  const Outcome outcome = run(simulate({"--export", "frames", "--every", "10"}));
+  EXPECT_EQ(outcome.code, 3);
+  const std::size_t first = outcome.err.find("squeezed at step");
+  EXPECT_NE(first, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("squeezed at step", first + 1), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("the last file has the last good frame, at 0.2"), std::string::npos)
+      << outcome.err;
+  // The start is due, the next frame after 10 s is not reached; the state that the report speaks of is there.
+  Json list;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "frames"))
+    if (entry.path().string().ends_with(".ply.json")) list = Json::parse(readAll(entry.path()));
+  ASSERT_EQ(list["files"].size(), 2U);
+  EXPECT_EQ(list["files"].back()["state_hash"], report()["state_hash"]);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "frames" / list["files"].back()["file"].get<std::string>()));
+}
+
 }  // namespace
 }  // namespace migiwa::testing

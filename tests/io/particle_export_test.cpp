@@ -167,7 +167,10 @@ TEST_F(ParticleFiles, AnEmptyFrameIsAFileToo) {
   }
   EXPECT_EQ(readPly(contentOf(folder_ / "drop_000000.ply")).count, 0U);
   EXPECT_NE(contentOf(folder_ / "drop_000000.ply").find("property float vx\n"), std::string::npos);
-  EXPECT_EQ(readVtk(contentOf(folder_ / "drop_000000.vtk")).count, 0U);
+  const ParticleTable table = readVtk(contentOf(folder_ / "drop_000000.vtk"));
+  EXPECT_EQ(table.count, 0U);
+  for (const char* name : {"velocity0", "velocity1", "velocity2", "id"})
+    EXPECT_TRUE(table.columns.contains(name)) << name;
 }
 
 TEST_F(ParticleFiles, NoneIsLostAndTheRunIsTheSame) {

@@ -89,6 +89,8 @@ inline ParticleTable readVtk(const std::string& text) {
     for (std::size_t k = 0; k < table.count; ++k)
       for (int c = 0; c < components; ++c)
         table.columns[components > 1 ? name + std::to_string(c) : name].push_back(words.next());
+    // Also those that hold nothing.
+    for (int c = 0; c < components; ++c) table.columns[components > 1 ? name + std::to_string(c) : name];
     at = words.at();
   };
   const auto expect = [](const std::string& found, const std::string& expected) {
@@ -120,14 +122,20 @@ inline ParticleTable readVtk(const std::string& text) {
       std::size_t count = 0;
       words >> count;
       expect(std::to_string(count), std::to_string(table.count));
-    } else if (keyword == "VECTORS") {
-      words >> name >> type;
-      expect(type, "float");
-      take(name, 3);
-    } else if (keyword == "SCALARS") {
-      words >> name >> type;
-      expect(line(), "LOOKUP_TABLE default");
-      take(name, 1);
+    } else if (keyword == "FIELD") {
+      int arrays = 0;
+      words >> name >> arrays;
+      for (; arrays > 0; --arrays) {
+        std::string heading = line();
+        if (heading.empty()) heading = line();
+        std::istringstream array(heading);
+        int components = 0;
+        std::size_t count = 0;
+        array >> name >> components >> count >> type;
+        if (type != "float" && type != "unsigned_int") throw std::runtime_error("unforeseen type " + type);
+        expect(std::to_string(count), std::to_string(table.count));
+        take(name, components);
+      }
     } else {
       throw std::runtime_error("unforeseen keyword " + keyword);
     }

@@ -60,6 +60,13 @@ Report filledReport() {
   report.densityErrorMean = 0.0078125;
   report.densityErrorMax = 0.125;
   report.lostParticles = 0;
+  report.startedParticles = 9000;
+  report.emittedParticles = 516;
+  report.leftParticles = 100;
+  report.leftVolume = 0.0125;
+  report.drainedParticles = 200;
+  report.drainedVolume = 0.025;
+  report.drains = {{200, 0.025, {0.5, 1}, {0.0125, 0.025}}};
   report.trouble = {{"not_converged", 12, 3, "error 0.04"}};
   report.settled.height = 0.75;
   report.settled.edgeCrowding = 1.0625;
@@ -79,6 +86,9 @@ TEST_F(ReportFile, ComesBackTheSame) {
   EXPECT_DOUBLE_EQ(again.stages[1].seconds, 0.001);
   ASSERT_EQ(again.trouble.size(), 1U);
   EXPECT_EQ(again.trouble[0].step, 12);
+  ASSERT_EQ(again.drains.size(), 1U);
+  EXPECT_EQ(again.drains[0].times, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(again.drains[0].volumes, (std::vector<double>{0.0125, 0.025}));
 }
 
 TEST_F(ReportFile, HasTheKeysThatPeopleScriptAgainst) {
@@ -102,6 +112,15 @@ TEST_F(ReportFile, HasTheKeysThatPeopleScriptAgainst) {
                           "density_error",
                           "lost_particles",
                           "nonfinite_particles",
+                          "totals",
+                          "started",
+                          "emitted",
+                          "left",
+                          "volume",
+                          "drained",
+                          "drains",
+                          "times",
+                          "volumes",
                           "max_penetration",
                           "max_speed",
                           "peak_memory_bytes",
@@ -112,6 +131,7 @@ TEST_F(ReportFile, HasTheKeysThatPeopleScriptAgainst) {
                           "work",
                           "walls",
                           "emitters",
+                          "outflow",
                           "effects",
                           "dissipated",
                           "largest_gain",

@@ -69,6 +69,10 @@ TEST(RunLimit, EmittersAreCountedToTheEndOfTheRunNotOfTheScene) {
   const double remedy = numberAfter(*fault, "; an end of ");
   EXPECT_GT(remedy, 4);
   EXPECT_FALSE(tooLateAnEnd(scene, remedy, memory).has_value()) << *fault;
+  // What a drain takes again is not there at once; an emitter ends where memory does.
+  Scene drained = scene;
+  drained.drains.emplace_back();
+  EXPECT_FALSE(tooLateAnEnd(drained, 100, memory).has_value());
   // However much memory there is, neighbours are counted in 32 bits.
   EXPECT_TRUE(tooLateAnEnd(scene, 1e5, kUnlimited).has_value());
 }

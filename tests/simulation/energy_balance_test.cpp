@@ -167,8 +167,8 @@ TEST(EnergyBalance, TheHistoryStaysShortAndEven) {
   Simulation simulation(scene, 1);
   advance(simulation, 5);
   const std::vector<EnergySample>& history = simulation.view().info.energy;
-  ASSERT_LE(history.size(), EnergyBalance::kMostSamples);
-  ASSERT_GE(history.size(), EnergyBalance::kMostSamples / 2);
+  ASSERT_LE(history.size(), Thinning::kMostSamples);
+  ASSERT_GE(history.size(), Thinning::kMostSamples / 2);
   EXPECT_EQ(history.front().time, 0);
   for (std::size_t k = 1; k < history.size(); ++k)
     EXPECT_NEAR(history[k].time - history[k - 1].time, history[1].time, 1e-9) << k;

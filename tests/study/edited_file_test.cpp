@@ -25,8 +25,8 @@ TEST(StudyOfAnEditedMesh, IsRefusedAtTheNextRepetition) {
       "fluid": [ { "shape": "mesh", "file": "corner.obj" } ] })";
   const StudyPlan plan{folder / "scene.json", {}, {{"/solver/max_iterations", {"2"}}}, 0.02};
   const std::string before = runFingerprint(plan, 1);
-  const auto ignore = [](double) {};
-  RunRecord record = firstRepetition(plan, 1, 1, [&](double) {
+  const auto ignore = [](const Simulation&) {};
+  RunRecord record = firstRepetition(plan, 1, 1, [&](const Simulation&) {
     // While the run goes on.
     if (runFingerprint(plan, 1) == before) testing::rewriteUnseen(folder / "corner.obj", corner("0.55"));
   });

@@ -58,4 +58,23 @@ inline Scene smallDamBreak() {
   return scene;
 }
 
+/// Thirty mouths at nearly one place: without guards, one step throws their fluid apart at speeds that
+/// nothing has given.
+inline Scene blowUp() {
+  Scene scene = emptyScene();
+  scene.domain = {true, {-3, -3, -3}, {3, 3, 3}};
+  for (int k = 0; k < 30; ++k) {
+    Emitter emitter;
+    emitter.shape = MouthShape::rectangle;
+    emitter.center = {1e-3 * k, 0, 0};
+    emitter.size = {0.3, 0.3};
+    emitter.speed = 1;
+    scene.emitters.push_back(emitter);
+  }
+  scene.solver.cfl = 0;
+  scene.solver.timeStep = 0.001;
+  scene.solver.maxIterations = 50;
+  return scene;
+}
+
 }  // namespace migiwa::testing
