@@ -17,6 +17,7 @@ using Corners = std::array<Vec3d, 3>;
 struct Crossing {
   std::int64_t column;
   double height;  ///< (m)
+  int turns;      ///< what the winding number changes by on the way up
 
   bool operator<(const Crossing& other) const {
     return column != other.column ? column < other.column : height < other.height;
@@ -104,7 +105,7 @@ class Filling {
 
   void cross(const Corners& corners, std::int64_t k) {
     // A line that runs exactly through an edge would count it twice or not at all: a shift that no mesh has
-    // avoids that.
+    // avoids that, and heights have one so that no centre lies between two faces that touch.
     const double shiftX = 1.2345e-7 * spacing_, shiftZ = 2.7183e-7 * spacing_;
     const double z = first_.z() + double(k) * spacing_ + shiftZ;
     const auto [low, high] = cut(corners, z);
@@ -121,11 +122,13 @@ class Filling {
       const double u = side(q, r), v = side(r, p), w = side(p, q);
       const bool within = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
       if (!within || u + v + w == 0) continue;
-      crossings_.push_back({i, (u * p.y() + v * q.y() + w * r.y()) / (u + v + w)});
+      // A face that looks down is where the line comes in.
+      const double twiceArea = u + v + w;
+      crossings_.push_back({i, (u * p.y() + v * q.y() + w * r.y()) / twiceArea, twiceArea > 0 ? 1 : -1});
     }
   }
 
-  double heightOf(std::int64_t j) const { return first_.y() + spacing_ * double(j); }
+  double heightOf(std::int64_t j) const { return first_.y() + spacing_ * (double(j) + 3.1416e-7); }
 
   /// The lowest cell of a column whose centre is above a height.
   std::int64_t cellAbove(double height) const {
@@ -136,19 +139,21 @@ class Filling {
     return j;
   }
 
-  /// Between every other crossing of a column and the next is the mesh.
+  /// The mesh is where the winding number, the sum of the turns below, is 1 or more.
   void fillSlab(std::int64_t k) {
     std::sort(crossings_.begin(), crossings_.end());
     cells_.clear();
-    for (std::size_t c = 0; c + 1 < crossings_.size();) {
+    int winding = 0;
+    for (std::size_t c = 0; c + 1 < crossings_.size(); ++c) {
       const Crossing &below = crossings_[c], &above = crossings_[c + 1];
+      winding += below.turns;
       if (below.column != above.column) {
-        ++c;  // one that no other follows bounds nothing
+        winding = 0;  // one that no other follows bounds nothing
         continue;
       }
+      if (winding < 1) continue;
       const std::int64_t end = cellAbove(above.height);
       for (std::int64_t j = cellAbove(below.height); j < end; ++j) cells_.emplace_back(j, below.column);
-      c += 2;
     }
     std::sort(cells_.begin(), cells_.end());
     for (const auto& [j, i] : cells_)
