@@ -1,6 +1,8 @@
 // Closed meshes put together in code.
 #pragma once
 
+#include <cmath>
+
 #include "core/slim/points.h"
 
 namespace migiwa::testing {
@@ -19,6 +21,15 @@ inline TriangleMesh boxMesh(const Vec3d& corner, const Vec3d& a, const Vec3d& b,
 inline TriangleMesh slantedNeedle(double length, double width) {
   const Vec3d along = Vec3d(1, 0.9, 1.1).normalized(), a = along.unitOrthogonal(), b = along.cross(a);
   return boxMesh(-0.5 * width * (a + b), width * a, width * b, length * along);
+}
+
+/// By how many cells, quarters below 1, a lattice with a cell at `center` lies below one with a cell at
+/// `first`.
+inline Vec3d movedBy(const Vec3d& center, const Vec3d& first, double spacing) {
+  return ((first - center) / spacing).unaryExpr([](double cells) {
+    const double quarters = std::round(4 * cells);
+    return (quarters - 4 * std::floor(quarters / 4)) / 4;
+  });
 }
 
 }  // namespace migiwa::testing
