@@ -65,7 +65,9 @@ void describeFluid(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   const auto more = [&](auto& fields, auto& source) {
     fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
     fields.boolean("trim", source.trim,
-                   {"", "Leave out particles less than half a spacing inside the fluid side of a wall."});
+                   {"",
+                    "Leave out particles less than half a spacing inside the fluid side of a wall, or nearer "
+                    "than 0.9 spacings to one of an earlier source."});
     if (Visitor::kChanges && spacingKnown &&
         fields.valid({"min", "max", "center", "radius", "file", "transform"}) &&
         source.count(scene.particleSpacing) < 1)

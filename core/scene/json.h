@@ -16,6 +16,8 @@
 
 namespace migiwa {
 
+struct Scene;
+
 /// Keeps the order in which keys were written.
 using Json = nlohmann::ordered_json;
 
@@ -157,5 +159,12 @@ Json resolveIncludes(std::string_view text, const std::filesystem::path& name, F
 /// objects on the way that are missing are made, entries of arrays are not; the last token "-" adds an entry
 /// to an array, and null takes a member out of its object.
 void applyOverrides(const std::vector<Override>& overrides, Json& root, FaultList& faults);
+
+// Where things are and how large, beside each other.
+
+/// Faults of vessels that share no room, as the scene written as `root` has them; warnings of shapes from
+/// files that look like millimetres, or like metres among millimetres, and of walls that are nowhere near the
+/// fluid.
+void checkPlaces(const Scene& scene, const Json& root, FaultList& faults);
 
 }  // namespace migiwa

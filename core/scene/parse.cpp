@@ -155,13 +155,22 @@ std::string controlCharacterFault(char c) {
          number + (brief < 5 ? std::string(" or \\") + "btnfr"[brief] : "");
 }
 
+constexpr std::string_view kSaveAsUtf8 =
+    "; the file seems to be in Latin-1 or another code of one byte a letter: save it as UTF-8";
+
+/// Whether the text is in 16 or 32 bits a letter without a mark that says so: letters of JSON come with
+/// zeros.
+bool isWide(std::string_view text) {
+  return text.size() >= 2 && (text[0] == '\0') != (text[1] == '\0');
+}
+
 /// What is wrong with a text in quotes, from its opening quote to the last byte that the parser took; `ended`
 /// when it wanted more than there are.
 std::string textFault(std::string_view text, bool ended) {
   const auto invalid = [](std::string_view why) { return "an invalid text (" + std::string(why) + ")"; };
   const std::string_view before = text.substr(0, std::max<std::size_t>(text.size(), 2) - 1);
   const bool cutsCharacter = !isAscii(before.back()) && !Json::accept(std::string(before) + '"');
-  if (!ended && cutsCharacter) return invalid("ill-formed UTF-8 byte");
+  if (!ended && cutsCharacter) return invalid("ill-formed UTF-8 byte").append(kSaveAsUtf8);
   for (std::size_t k = 1; k < text.size(); ++k) {
     if (text[k] == '\n') return "a text that does not end on its line";
     if (static_cast<unsigned char>(text[k]) < 0x20) return invalid(controlCharacterFault(text[k]));
@@ -171,7 +180,7 @@ std::string textFault(std::string_view text, bool ended) {
     const std::string_view fault = escaped == 'u' ? codeUnitFault(text, k) : std::string_view();
     if (!fault.empty()) return invalid(fault);
   }
-  return ended ? "a text that never ends" : invalid("ill-formed UTF-8 byte");
+  return ended ? "a text that never ends" : invalid("ill-formed UTF-8 byte").append(kSaveAsUtf8);
 }
 
 /// What a number lacks that ends too early.
@@ -237,6 +246,8 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
 
   /// Only the position is taken from the parser: the words of its exceptions are its own affair.
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
+    if (isWide(text_))
+      return refuse(0, "expected a text in UTF-8, found one in UTF-16 or UTF-32; save the file as UTF-8");
     // The token that the parser could not take is the first that is not JSON by itself, or the one that ends
     // where the parser stopped.
     char before = '\0';
@@ -345,7 +356,20 @@ class DocumentBuilder final : public nlohmann::json_sax<Json> {
       return expected + ", found an invalid number (" + std::string(numberFault(number)) + ")";
     if (!number.empty() && expected == "a value")
       return "a number that is not beyond 1e308, found " + shownToken(rest);
-    return expected + ", found " + shownToken(rest).append(hint(rest, before));
+    const std::size_t at = token.begin;
+    const bool decimalComma = !number.empty() && before == ',' && at > 1 && text_[at - 1] == ',' &&
+                              isDigit(text_[at - 2]) && isDigit(sign);
+    return expected + ", found " + shownToken(rest) +
+           (decimalComma ? "; decimals follow a point, not a comma: " + numberBefore(at - 1) + "." +
+                               std::string(number)
+                         : std::string(hint(rest, before)));
+  }
+
+  /// The digits, and a minus, that end at `end`.
+  std::string numberBefore(std::size_t end) const {
+    std::size_t begin = end;
+    while (begin > 0 && beginsNumber(text_[begin - 1])) --begin;
+    return std::string(text_.substr(begin, end - begin));
   }
 
   std::string_view text_;

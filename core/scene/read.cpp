@@ -42,6 +42,29 @@ std::string child(const std::string& pointer, std::string_view key) {
   return key.empty() ? pointer : childPointer(pointer, key);
 }
 
+/// What to do about decimals with a comma: in a text instead of a number, or more entries than there are
+/// numbers.
+std::string decimalHint(const Json& found, std::string_view expected) {
+  if (found.is_string() && expected.starts_with("a number")) {
+    std::string text = found.get<std::string>();
+    const std::size_t comma = text.find(',');
+    if (comma == text.npos || text.find_first_not_of("0123456789,+-eE. ") != text.npos) return {};
+    text[comma] = '.';
+    return "; a number has no quotes, and a point before its decimals: " + text;
+  }
+  if (!found.is_array() || !expected.starts_with("an array of ")) return {};
+  std::size_t wanted = 0;
+  for (const char c : expected.substr(12)) {
+    if (c < '0' || c > '9') break;
+    wanted = 10 * wanted + static_cast<std::size_t>(c - '0');
+  }
+  const bool integers = std::all_of(found.begin(), found.end(), [](const Json& entry) {
+    return entry.is_number_integer() || entry.is_number_unsigned();
+  });
+  return wanted > 0 && found.size() > wanted && integers ? "; decimals follow a point, and 0,2 is two numbers"
+                                                         : std::string();
+}
+
 /// Reads the fields of one JSON object, and of the objects in it, into the structs that visit them. Every
 /// fault is collected; a faulty value leaves the default in place. Unknown keys are faults.
 class JsonReader final : public FieldVisitor {
@@ -209,7 +232,7 @@ class JsonReader final : public FieldVisitor {
   const Json* take(std::string_view key, const FieldDoc& doc, const std::string& expected, const Fits& fits) {
     const Json* const found = find(key, doc, expected);
     if (found == nullptr || fits(*found)) return found;
-    wrong(key, expected, describeJson(*found));
+    wrong(key, expected, describeJson(*found) + decimalHint(*found, expected));
     return nullptr;
   }
 
@@ -307,6 +330,7 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
   JsonReader::read(root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
   named = faults.files();
   checkWhole(scene, faults);
+  if (faults.empty()) checkPlaces(scene, root, faults);
   if (!faults.empty()) throw InputError(faults.faults());
   scene.warnings = faults.warnings();
   if (scene.name.empty()) scene.name = scene.stem();

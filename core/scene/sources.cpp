@@ -64,12 +64,10 @@ void BoxSource::describe(FieldVisitor& visitor) {
     visitor.fault("max", "expected every coordinate to be larger than that of min, found one that is not");
 }
 
-Vec3d BoxSource::cells(double spacing) const {
-  return ((max_ - min_) / spacing).array().unaryExpr([](double n) { return std::round(n); });
-}
-
 double BoxSource::count(double spacing) const {
-  return cells(spacing).prod();
+  // One that goes on from another box may have a cell more than has room in it.
+  const Eigen::Array3d cells = (max_ - min_).array() / spacing;
+  return (cells < 0.5).any() ? 0 : (cells - kCellTolerance).ceil().prod();
 }
 
 Vec3d BoxSource::toWorld(const Vec3d& p) const {
@@ -79,12 +77,25 @@ Vec3d BoxSource::toWorld(const Vec3d& p) const {
 }
 
 void BoxSource::fill(double spacing, std::vector<Vec3d>& out) const {
-  const Eigen::Array<std::int64_t, 3, 1> n = cells(spacing).array().cast<std::int64_t>();
-  for (std::int64_t k = 0; k < n.z(); ++k)
-    for (std::int64_t j = 0; j < n.y(); ++j)
-      for (std::int64_t i = 0; i < n.x(); ++i)
+  std::array<std::int64_t, 3> n{};
+  for (int axis = 0; axis < 3; ++axis)
+    n[static_cast<std::size_t>(axis)] =
+        static_cast<std::int64_t>(wholeCells(max_[axis] - min_[axis], spacing));
+  for (std::int64_t k = 0; k < n[2]; ++k)
+    for (std::int64_t j = 0; j < n[1]; ++j)
+      for (std::int64_t i = 0; i < n[0]; ++i)
         out.push_back(
             toWorld(min_ + spacing * (Eigen::Array3d(double(i), double(j), double(k)) + 0.5).matrix()));
+}
+
+Bounds BoxSource::block() const {
+  return rotation_.degrees == 0 ? Bounds{min_, max_} : Bounds{};
+}
+
+Vec3d BoxSource::leftOver(double spacing) const {
+  return (max_ - min_).unaryExpr([=](double length) {
+    return std::max(0.0, length - spacing * wholeCells(length, spacing));
+  });
 }
 
 Bounds BoxSource::bounds() const {

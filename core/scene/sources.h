@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,10 +32,17 @@ class FluidSource {
   /// Appends the centres of a cell-centred lattice of the given spacing (m) that lie in the region.
   virtual void fill(double spacing, std::vector<Vec3d>& out) const = 0;
   virtual Bounds bounds() const = 0;
+  /// The region where it is an upright box, whose lattice can go on from that of another one that it touches;
+  /// empty for any other.
+  virtual Bounds block() const { return {}; }
+  /// Lengths (m) that stay empty because no whole cell has room there, along the axes of its lattice.
+  virtual Vec3d leftOver(double /*spacing*/) const { return Vec3d::Zero(); }
 
   /// Fields that every source has.
   Vec3d velocity = Vec3d::Zero();  ///< initial velocity (unit: m/s)
-  bool trim = true;  ///< leave out centres that are less than half a spacing inside the fluid side
+  /// Leave out centres that are less than half a spacing inside the fluid side, and those that are nearer
+  /// than 0.9 spacings to a particle of an earlier source.
+  bool trim = true;
 };
 
 /// Names for the scene's "shape" key, in the order of makeFluidSource's index.
@@ -43,8 +51,8 @@ std::unique_ptr<FluidSource> makeFluidSource(int shape);
 
 // A box full of fluid, upright or turned about its centre.
 
-/// The lattice has round(length / spacing) cells along each axis of the box and begins at `min`, so that a
-/// box in a corner of a tank touches its walls whatever its lengths are.
+/// The lattice begins at `min`, so that a box on the floor of a tank lies on it whatever its lengths are, and
+/// has as many whole cells along each axis of the box as there is room for before `max`.
 class BoxSource final : public FluidSource {
  public:
   BoxSource() = default;
@@ -55,18 +63,49 @@ class BoxSource final : public FluidSource {
   double count(double spacing) const override;
   void fill(double spacing, std::vector<Vec3d>& out) const override;
   Bounds bounds() const override;
+  Bounds block() const override;
+  Vec3d leftOver(double spacing) const override;
 
  private:
   template <class Visitor>
   static void fields(Visitor& visitor, Visited<Visitor, BoxSource>& self);
-  /// Cells along each axis, as real numbers: they may be more than an integer holds.
-  Vec3d cells(double spacing) const;
   Vec3d toWorld(const Vec3d& p) const;
 
   Vec3d min_ = Vec3d::Zero();
   Vec3d max_ = Vec3d::Ones();
   Rotation rotation_;
 };
+
+// Sources that are filled together. Upright boxes that touch or overlap share a lattice along the axis along
+// which they follow each other: each goes on where a whole number of cells of the one below ends, so that no
+// gap is left between them. Where their places are whole cells apart, nothing changes.
+
+class SourceUnion {
+ public:
+  /// `spacing` in m.
+  SourceUnion(std::vector<std::shared_ptr<const FluidSource>> sources, double spacing);
+
+  /// Appends the centres of a source, before any of them is left out for a wall or another source. Cells of a
+  /// box that begin before its `min` are filled where another box is below them.
+  void fill(std::size_t source, std::vector<Vec3d>& out) const;
+  /// What of a box stays empty, or is filled beyond it, with its share; empty where neither is the case.
+  std::string remark(std::size_t source) const;
+
+ private:
+  double startAlong(int axis, std::size_t source) const;
+  bool anyHolds(const Vec3d& p, std::size_t except) const;
+
+  std::vector<std::shared_ptr<const FluidSource>> sources_;
+  std::vector<Bounds> blocks_;  ///< empty for a source that is no upright box
+  std::vector<Vec3d> starts_;   ///< where the lattices of the blocks begin (m)
+  double spacing_;
+};
+
+/// What decimal numbers miss by in a double, in cells.
+inline constexpr double kCellTolerance = 1e-6;
+
+/// How many whole cells have room in a length (m), give or take the tolerance.
+double wholeCells(double length, double spacing);
 
 // A ball of fluid.
 
@@ -90,10 +129,11 @@ class SphereSource final : public FluidSource {
   double radius_ = 1;
 };
 
-// The inside of a closed mesh, full of fluid.
+// The inside of a closed mesh, full of fluid: the union of its parts, less those within others that face
+// inwards.
 
-/// The lattice has round(length / spacing) cells along each axis of the mesh's bounds, centred on them; the
-/// cells whose centres lie in the mesh are filled.
+/// The lattice has round(length / spacing) cells along each axis of the mesh's bounds, centred on them or
+/// moved by quarters of a cell; the cells at whose centres the mesh's winding number is 1 or more are filled.
 class MeshSource final : public FluidSource {
  public:
   MeshSource() = default;
@@ -172,9 +212,12 @@ struct MeshFillWork {
   std::size_t mostHeld = 0;  ///< crossings and cells that were held at once beside the result
 };
 
-/// Appends the centres of the cells that lie in the mesh, by z, then y, then x. The lattice has
-/// round(length / spacing) cells along each axis of the mesh's bounds, centred on them. `spacing` in m; the
-/// lattice must have fewer than 2^53 cells along each axis.
+/// Appends the centres of the cells at which the winding number of the mesh, whose triangles face outwards,
+/// is 1 or more, by z, then y, then x. The lattice has round(length / spacing) cells along each axis of the
+/// mesh's bounds, centred on them; or, where it is of fewer than a million cells and that misses the volume
+/// by more than 1 %, it is moved by quarters of a cell, so that it comes nearer. `spacing` in m; the lattice
+/// must have fewer than 2^53 cells along each axis. Returns the work of the filling itself, without that of
+/// trying such moves.
 MeshFillWork fillMesh(const TriangleMesh& mesh, double spacing, std::vector<Vec3d>& out);
 
 }  // namespace migiwa

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include "core/base/files.h"
+#include "core/base/messages.h"
 #include "core/base/progress.h"
 #include "core/simulation/frame_view.h"
 
@@ -17,36 +23,135 @@ namespace {
 /// doubling.
 constexpr double kBytesWhileFilling = 200;
 
+/// Particles of different sources are no nearer to each other than this, in spacings.
+constexpr double kNearestOther = 0.9;
+
+/// Particles of one source that are there, from `begin` to `end`, and their extent.
+struct Filled {
+  std::size_t begin, end;
+  Bounds bounds;
+};
+
+NearPoints placesWithin(const Bounds& region, const std::vector<Filled>& filled, const Particles& particles,
+                        double reach) {
+  std::vector<Vec3f> taken;
+  for (const Filled& other : filled) {
+    if ((other.bounds.min.array() > region.max.array()).any() ||
+        (other.bounds.max.array() < region.min.array()).any())
+      continue;
+    for (std::size_t k = other.begin; k < other.end; ++k)
+      if (const Vec3f p = particles.position[k].xyz(); region.contains(p.cast<double>())) taken.push_back(p);
+  }
+  return {std::move(taken), reach};
+}
+
+bool anyWithin(const NearPoints& points, const Vec3f& p) {
+  bool found = false;
+  if (!points.empty())
+    points.within(p, [&](std::uint32_t) {
+      found = true;
+      return false;
+    });
+  return found;
+}
+
+std::string shareOf(std::size_t part, std::size_t all) {
+  std::ostringstream text;
+  text.precision(3);
+  text << 100 * static_cast<double>(part) / static_cast<double>(all) << " % of its particles (" << part
+       << " of " << all << ")";
+  return text.str();
+}
+
+/// What is said of a source, one sentence each.
+std::vector<std::string> remarksOn(std::size_t all, std::size_t inWalls, std::size_t inOthers,
+                                   std::string lattice) {
+  std::vector<std::string> remarks;
+  if (all == 0)
+    remarks.emplace_back("no particle has room in this source; it is thinner than particle_spacing");
+  else if (inWalls == all)
+    remarks.emplace_back("no particle is left of this source; it lies within or too near the walls");
+  else if (inWalls + inOthers == all)
+    remarks.emplace_back("no particle is left of this source; earlier sources fill it already");
+  else if (!lattice.empty())
+    remarks.push_back(std::move(lattice));
+  if (inWalls > 0 && inWalls < all)
+    remarks.push_back(shareOf(inWalls, all) + " lie within or too near the walls and are left out");
+  if (inOthers > 0 && inOthers < all)
+    remarks.push_back(shareOf(inOthers, all) +
+                      " lie where those of earlier sources are already and are left out");
+  return remarks;
+}
+
+/// Fewer layers than this resolve neither a surface nor what flows below it.
+constexpr int kFewLayers = 3;
+
+/// Layers of particles above each other where there are most, none where there are more than a few.
+std::optional<int> fewLayers(const Particles& particles, const Vec3d& gravity, double spacing) {
+  if (gravity.isZero() || particles.size() == 0) return std::nullopt;
+  const Vec3d up = -gravity.normalized(), x = up.unitOrthogonal(), y = up.cross(x);
+  const Vec3d first = particles.position[0].xyz().cast<double>();
+  std::map<std::pair<std::int64_t, std::int64_t>, std::pair<double, double>> columns;
+  double deepest = 0;
+  for (const Float4& position : particles.position) {
+    const Vec3d p = position.xyz().cast<double>() - first;
+    const auto along = [&](const Vec3d& axis) { return std::llround(p.dot(axis) / spacing); };
+    const double height = p.dot(up);
+    auto& [low, high] = columns.try_emplace({along(x), along(y)}, height, height).first->second;
+    low = std::min(low, height), high = std::max(high, height);
+    deepest = std::max(deepest, (high - low) / spacing);
+    if (deepest > kFewLayers - 0.5) return std::nullopt;
+  }
+  return static_cast<int>(std::lround(deepest)) + 1;
+}
+
 }  // namespace
 
 void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
+  const double spacing = scene.particleSpacing;
   // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take
   // rounding.
-  const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
+  const auto margin = static_cast<float>((0.5 - 1e-3) * spacing);
   double most = 0;
-  for (const auto& source : scene.fluid) most += source->count(scene.particleSpacing);
+  for (const auto& source : scene.fluid) most += source->count(spacing);
   requireMemory(kBytesWhileFilling * most, "particles", scene.file.string() + ":/particle_spacing");
+  const SourceUnion sources(scene.fluid, spacing);
+  std::vector<Filled> filled;
   std::vector<Vec3d> centers;
   for (std::size_t k = 0; k < scene.fluid.size(); ++k) {
     const FluidSource& source = *scene.fluid[k];
     centers.clear();
-    source.fill(scene.particleSpacing, centers);
-    const std::size_t before = particles.size();
+    sources.fill(k, centers);
+    const NearPoints taken =
+        placesWithin(source.bounds().grown(3 * spacing), filled, particles, kNearestOther * spacing);
+    Filled own{particles.size(), 0, {}};
+    std::size_t inWalls = 0, inOthers = 0;
     constexpr std::size_t kTold = 4096;
     for (const Vec3d& center : centers) {
       if (const auto done = static_cast<std::size_t>(&center - centers.data()); done % kTold == 0)
         Activity::pulse(static_cast<double>(done) / static_cast<double>(centers.size()));
       const Vec3f p = center.cast<float>();
-      if (source.trim && boundary.distance(p) < margin) continue;
-      particles.position.emplace_back(p);
-      particles.velocity.emplace_back(Vec3f(source.velocity.cast<float>()));
-      particles.id.push_back(static_cast<std::uint32_t>(particles.size()));
+      if (source.trim && boundary.distance(p) < margin) {
+        ++inWalls;
+      } else if (source.trim && anyWithin(taken, p)) {
+        ++inOthers;
+      } else {
+        particles.position.emplace_back(p);
+        particles.velocity.emplace_back(Vec3f(source.velocity.cast<float>()));
+        particles.id.push_back(static_cast<std::uint32_t>(particles.size()));
+        own.bounds.include(p.cast<double>());
+      }
     }
-    if (particles.size() == before) {
-      scene.warnings.push_back("/fluid/" + std::to_string(k) +
-                               ": no particle is left of this source; it lies within or too near the walls");
-    }
+    own.end = particles.size();
+    if (own.end > own.begin) filled.push_back(own);
+    for (const std::string& remark : remarksOn(centers.size(), inWalls, inOthers, sources.remark(k)))
+      scene.warnings.push_back("/fluid/" + std::to_string(k) + ": " + remark);
   }
+  if (const auto layers = fewLayers(particles, scene.gravity, spacing))
+    scene.warnings.push_back(
+        "/particle_spacing: the fluid is " + std::to_string(*layers) + (*layers == 1 ? " layer" : " layers") +
+        " of particles deep, too thin for its flow to be resolved; a particle_spacing of " +
+        formatNumber("%.2g", *layers * spacing / 8) + " m makes 8 of them");
 }
 
 namespace {

@@ -18,7 +18,9 @@ namespace migiwa {
 
 // The particles that a scene starts with.
 
-/// Fills every source with its lattice, trimmed at the solids. A source that trimming empties adds a warning.
+/// Fills the union of the sources, each with its lattice, trimmed at the solids and at the particles of
+/// earlier sources. What that leaves out or adds is a warning, with its share; so is fluid of three layers or
+/// fewer.
 void fillScene(Scene& scene, const Boundary& boundary, Particles& particles);
 
 // What the emitters of a scene give while it runs. Layer k of an emitter leaves the mouth at

@@ -281,9 +281,18 @@ std::string cutTo(SlimData& data, double tolerance, int nodes) {
 }
 
 void transformShape(ImportedShape& shape, const Transform& transform) {
-  for (Vec3f& vertex : shape.mesh.vertices) vertex = transform.point(vertex);
-  for (OrientedPoint& point : shape.cloud.points)
-    point = {transform.point(point.position), transform.direction(point.normal)};
+  const Eigen::Matrix3d turn = transform.rotate.matrix();
+  for (Vec3d& place : shape.exact) place = turn * (transform.scale * place) + transform.translate;
+  const bool exact = !shape.exact.empty();
+  for (std::size_t k = 0; k < shape.mesh.vertices.size(); ++k) {
+    Vec3f& vertex = shape.mesh.vertices[k];
+    vertex = exact ? Vec3f(shape.exact[k].cast<float>()) : transform.point(vertex);
+  }
+  for (std::size_t k = 0; k < shape.cloud.points.size(); ++k) {
+    OrientedPoint& point = shape.cloud.points[k];
+    point = {exact ? Vec3f(shape.exact[k].cast<float>()) : transform.point(point.position),
+             transform.direction(point.normal)};
+  }
 }
 
 void transformNodes(std::vector<SlimNode>& nodes, const Transform& transform) {

@@ -97,6 +97,7 @@ SlimStatistics measureSlim(const SlimModel& model, const std::vector<OrientedPoi
 /// From points on the shape: on a mesh some that no fit uses, of a point cloud all.
 SlimStatistics measureSlim(const SlimModel& model, const ImportedShape& shape, ThreadPool& pool);
 
+/// In double, as far as the file says: a shape far from the origin can be moved back without loss.
 void transformShape(ImportedShape& shape, const Transform& transform);
 void transformNodes(std::vector<SlimNode>& nodes, const Transform& transform);
 

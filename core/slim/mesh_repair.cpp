@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <cstring>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <unordered_map>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -47,7 +48,55 @@ void weld(TriangleMesh& mesh) {
     for (std::uint32_t& corner : triangle) corner = same[corner];
 }
 
-void dropUseless(TriangleMesh& mesh, std::vector<std::string>& notes) {
+/// Corners nearer to each other than this share of the mesh's diagonal are one: files write so many digits.
+constexpr double kWelded = 1e-6;
+
+/// Welds corners that nearly meet, each to the first of those that it hangs together with. After weld().
+void weldNear(TriangleMesh& mesh, std::vector<std::string>& notes) {
+  const double reach = kWelded * mesh.bounds().size().norm();
+  if (!(reach > 0)) return;
+  const NearPoints near(mesh.vertices, reach);
+  std::vector<std::uint32_t> first(mesh.vertices.size());
+  for (std::uint32_t k = 0; k < first.size(); ++k) first[k] = k;
+  const auto root = [&](std::uint32_t k) {
+    while (first[k] != k) k = first[k] = first[first[k]];
+    return k;
+  };
+  std::size_t welded = 0;
+  for (std::uint32_t k = 0; k < first.size(); ++k)
+    near.within(mesh.vertices[k], [&](std::uint32_t other) {
+      const std::uint32_t a = root(k), b = root(other);
+      if (a != b) first[std::max(a, b)] = std::min(a, b), ++welded;
+      return true;
+    });
+  if (welded == 0) return;
+  for (Triangle& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = root(corner);
+  std::ostringstream text;
+  text.precision(2);
+  text << counted(welded, "corner was", "corners were") << " welded to others within " << reach
+       << " m, a millionth of the mesh's size";
+  notes.push_back(text.str());
+}
+
+/// Leaves out vertices of no triangle.
+void dropVertices(TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> place(mesh.vertices.size(), kUnused);
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) place[corner] = 0;
+  std::uint32_t used = 0;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] == kUnused) continue;
+    mesh.vertices[used] = mesh.vertices[k];
+    place[k] = used++;
+  }
+  mesh.vertices.resize(used);
+  for (Triangle& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = place[corner];
+}
+
+void dropFlat(TriangleMesh& mesh, std::vector<std::string>& notes) {
   const std::size_t all = mesh.triangles.size();
   std::erase_if(mesh.triangles,
                 [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
@@ -55,72 +104,105 @@ void dropUseless(TriangleMesh& mesh, std::vector<std::string>& notes) {
     notes.push_back(counted(flat, "triangle with two corners at the same place was",
                             "triangles with two corners at the same place were") +
                     " left out");
+}
+
+/// The triangles without those that are there before with the same corners, however they face.
+std::vector<Triangle> withoutRepeated(const std::vector<Triangle>& triangles) {
   std::set<Triangle> known;
-  const std::size_t before = mesh.triangles.size();
-  std::erase_if(mesh.triangles, [&](Triangle t) {
-    std::sort(t.begin(), t.end());
-    return !known.insert(t).second;
-  });
-  if (const std::size_t twice = before - mesh.triangles.size(); twice > 0)
+  std::vector<Triangle> once;
+  for (const Triangle& triangle : triangles) {
+    Triangle sorted = triangle;
+    std::sort(sorted.begin(), sorted.end());
+    if (known.insert(sorted).second) once.push_back(triangle);
+  }
+  return once;
+}
+
+void noteRepeated(std::size_t twice, std::vector<std::string>& notes) {
+  if (twice > 0)
     notes.push_back(
         counted(twice, "triangle that is there twice was", "triangles that are there twice were") +
         " left out");
 }
 
-/// The triangles on both sides of every edge.
+/// The triangles at every edge. Where parts touch, an edge has more than two: those of one part follow each
+/// other in the file, so the first two are taken for neighbours, and the next two, and so on.
 class Edges {
  public:
   struct Side {
-    std::uint32_t triangle = kNone;
-    bool forward = true;  ///< whether the triangle runs along the edge from its smaller to its larger vertex
+    std::uint32_t triangle;
+    bool forward;  ///< whether the triangle runs along the edge from its smaller to its larger vertex
   };
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  Edges(const TriangleMesh& mesh, const std::string& place) {
+  explicit Edges(const TriangleMesh& mesh) {
     sides_.reserve(mesh.triangles.size() * 3 / 2);
-    std::size_t crowded = 0;
-    std::uint64_t firstCrowded = 0;
-    for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+    for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k)
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t a = mesh.triangles[k][corner], b = mesh.triangles[k][(corner + 1) % 3];
-        auto& sides = sides_[key(a, b)];
-        const auto free =
-            std::find_if(sides.begin(), sides.end(), [](const Side& s) { return s.triangle == kNone; });
-        if (free == sides.end()) {
-          if (crowded++ == 0) firstCrowded = key(a, b);
-        } else {
-          *free = {k, a < b};
-        }
+        sides_[key(a, b)].push_back({k, a < b});
       }
-    }
-    if (crowded > 0) {
-      const Vec3f middle =
-          0.5F * (mesh.vertices[firstCrowded >> 32] + mesh.vertices[firstCrowded & 0xFFFFFFFFU]);
-      throw InputError(place, "expected edges of at most two triangles (a manifold), found " +
-                                  counted(crowded, "triangle", "triangles") +
-                                  " more on edges that have two already, the first at " + at(middle));
+  }
+
+  /// Takes neighbours at edges of more than two triangles by how they run along them instead.
+  void pairByDirection() {
+    for (auto& [edge, sides] : sides_) {
+      if (sides.size() <= 2) continue;
+      std::vector<Side> ahead, back;
+      for (const Side& side : sides) (side.forward ? ahead : back).push_back(side);
+      if (ahead.size() != back.size()) continue;
+      for (std::size_t k = 0; k < ahead.size(); ++k) sides[2 * k] = ahead[k], sides[2 * k + 1] = back[k];
     }
   }
 
-  const std::array<Side, 2>& of(std::uint32_t a, std::uint32_t b) const { return sides_.at(key(a, b)); }
+  /// The triangle on the other side of an edge, and whether both face the same way; nothing at a rim.
+  std::optional<std::pair<std::uint32_t, bool>> across(std::uint32_t a, std::uint32_t b,
+                                                       std::uint32_t triangle) const {
+    const std::vector<Side>& sides = sides_.at(key(a, b));
+    std::size_t own = 0;
+    while (sides[own].triangle != triangle) ++own;
+    const std::size_t other = own ^ 1U;
+    if (other >= sides.size()) return std::nullopt;
+    // Neighbours that face the same way run along their edge in opposite directions.
+    return std::pair(sides[other].triangle, sides[own].forward != sides[other].forward);
+  }
 
-  /// Number of edges with one triangle only, and the middle of one of them.
-  std::size_t open(const TriangleMesh& mesh, Vec3f& middle) const {
+  struct Found {
     std::size_t count = 0;
-    std::uint64_t first = 0;
-    for (const auto& [edge, sides] : sides_) {
-      if (sides[1].triangle != kNone) continue;
-      if (count++ == 0 || edge < first) first = edge;
-    }
-    if (count > 0) middle = 0.5F * (mesh.vertices[first >> 32] + mesh.vertices[first & 0xFFFFFFFFU]);
-    return count;
+    Vec3f middle = Vec3f::Zero();  ///< of one of them
+  };
+  /// Edges with one triangle only.
+  Found open(const TriangleMesh& mesh) const {
+    return count(mesh, [](std::size_t triangles) -> std::size_t { return triangles == 1 ? 1 : 0; });
+  }
+  /// Triangles beyond two at edges where they are no pairs.
+  Found odd(const TriangleMesh& mesh) const {
+    return count(mesh, [](std::size_t triangles) -> std::size_t {
+      return triangles > 2 && triangles % 2 == 1 ? triangles - 2 : 0;
+    });
+  }
+  bool crowded() const {
+    return std::any_of(sides_.begin(), sides_.end(), [](const auto& edge) { return edge.second.size() > 2; });
   }
 
  private:
+  template <class Counted>
+  Found count(const TriangleMesh& mesh, const Counted& counted) const {
+    Found found;
+    std::uint64_t first = 0;
+    for (const auto& [edge, sides] : sides_) {
+      const std::size_t more = counted(sides.size());
+      if (more == 0) continue;
+      if (found.count == 0 || edge < first) first = edge;
+      found.count += more;
+    }
+    if (found.count > 0)
+      found.middle = 0.5F * (mesh.vertices[first >> 32] + mesh.vertices[first & 0xFFFFFFFFU]);
+    return found;
+  }
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
   }
-  std::unordered_map<std::uint64_t, std::array<Side, 2>> sides_;
+  std::unordered_map<std::uint64_t, std::vector<Side>> sides_;
 };
 
 /// A connected part of the mesh: which triangles, and which of them face the other way than its first one.
@@ -129,8 +211,9 @@ struct Part {
   std::vector<bool> turned;
 };
 
-std::vector<Part> connectedParts(const TriangleMesh& mesh, const Edges& edges, const std::string& place) {
-  std::vector<Part> parts;
+/// Appends the parts of the mesh. Returns a corner at which a surface has one side only, if there is one.
+std::optional<std::uint32_t> findParts(const TriangleMesh& mesh, const Edges& edges,
+                                       std::vector<Part>& parts) {
   enum : std::uint8_t { unknown, same, opposite };
   std::vector<std::uint8_t> state(mesh.triangles.size(), unknown);
   for (std::uint32_t start = 0; start < mesh.triangles.size(); ++start) {
@@ -143,24 +226,35 @@ std::vector<Part> connectedParts(const TriangleMesh& mesh, const Edges& edges, c
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t a = mesh.triangles[triangle][corner],
                             b = mesh.triangles[triangle][(corner + 1) % 3];
-        const auto& sides = edges.of(a, b);
-        if (sides[1].triangle == Edges::kNone) continue;
-        const std::uint32_t other = sides[0].triangle == triangle ? sides[1].triangle : sides[0].triangle;
-        // Neighbours that face the same way run along their edge in opposite directions.
-        const bool agree = sides[0].forward != sides[1].forward;
+        const auto neighbour = edges.across(a, b, triangle);
+        if (!neighbour) continue;
+        const auto [other, agree] = *neighbour;
         const std::uint8_t wanted = (state[triangle] == same) == agree ? same : opposite;
         if (state[other] == unknown) {
           state[other] = wanted;
           part.triangles.push_back(other);
         } else if (state[other] != wanted) {
-          throw InputError(place, "expected a surface with two sides, found one like a Moebius strip at " +
-                                      at(mesh.vertices[a]));
+          return a;
         }
       }
     }
     for (const std::uint32_t triangle : part.triangles) part.turned.push_back(state[triangle] == opposite);
     parts.push_back(std::move(part));
   }
+  return std::nullopt;
+}
+
+std::vector<Part> connectedParts(const TriangleMesh& mesh, Edges& edges, const std::string& place) {
+  std::vector<Part> parts;
+  std::optional<std::uint32_t> oneSided = findParts(mesh, edges, parts);
+  if (oneSided && edges.crowded()) {
+    parts.clear();
+    edges.pairByDirection();
+    oneSided = findParts(mesh, edges, parts);
+  }
+  if (oneSided)
+    throw InputError(place, "expected a surface with two sides, found one like a Moebius strip at " +
+                                at(mesh.vertices[*oneSided]));
   return parts;
 }
 
@@ -177,13 +271,13 @@ double signedVolume(const TriangleMesh& mesh, const Part& part) {
   return volume;
 }
 
-/// Whether p lies inside the closed part: a ray in a direction that no modeller would choose crosses it an
-/// odd number of times.
+/// Whether p lies inside the closed part: a ray in a direction that no modeller would choose leaves it more
+/// often than it enters, or the other way round.
 bool contains(const TriangleMesh& mesh, const Part& part, const Vec3d& p) {
   const Vec3d direction = Vec3d(0.5377, 0.8338, -0.1259).normalized();
-  int crossings = 0;
-  for (const std::uint32_t triangle : part.triangles) {
-    const Triangle& t = mesh.triangles[triangle];
+  int winding = 0;
+  for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+    const Triangle& t = mesh.triangles[part.triangles[k]];
     const Vec3d a = mesh.vertices[t[0]].cast<double>();
     const Vec3d ab = mesh.vertices[t[1]].cast<double>() - a, ac = mesh.vertices[t[2]].cast<double>() - a;
     const Vec3d across = direction.cross(ac);
@@ -191,9 +285,18 @@ bool contains(const TriangleMesh& mesh, const Part& part, const Vec3d& p) {
     if (std::abs(determinant) < 1e-300) continue;
     const Vec3d offset = p - a, side = offset.cross(ab);
     const double u = offset.dot(across) / determinant, v = direction.dot(side) / determinant;
-    if (u >= 0 && v >= 0 && u + v <= 1 && ac.dot(side) / determinant > 0) ++crossings;
+    if (u >= 0 && v >= 0 && u + v <= 1 && ac.dot(side) / determinant > 0)
+      winding += (determinant > 0) != part.turned[k] ? 1 : -1;
   }
-  return crossings % 2 == 1;
+  return winding != 0;
+}
+
+Bounds boundsOf(const TriangleMesh& mesh, const Part& part) {
+  Bounds bounds;
+  for (const std::uint32_t triangle : part.triangles)
+    for (const std::uint32_t corner : mesh.triangles[triangle])
+      bounds.include(mesh.vertices[corner].cast<double>());
+  return bounds;
 }
 
 /// Whether the part lies in `other` as a whole, as far as some of its vertices tell: parts that cross do not.
@@ -207,25 +310,61 @@ bool liesWithin(const TriangleMesh& mesh, const Part& part, const Part& other) {
 }
 
 /// Beyond this many parts their nesting is not looked at: that takes the square of their number.
-constexpr std::size_t kMostNestedParts = 200;
+constexpr std::size_t kMostNestedParts = 5000;
+
+/// The part that each part lies in, the outermost one; itself for one that lies in no other.
+std::vector<std::size_t> outermost(const TriangleMesh& mesh, const std::vector<Part>& parts) {
+  std::vector<std::size_t> result(parts.size());
+  std::vector<Bounds> bounds;
+  for (const Part& part : parts) bounds.push_back(boundsOf(mesh, part));
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    result[k] = k;
+    double largest = 0;
+    for (std::size_t other = 0; other < parts.size() && parts.size() <= kMostNestedParts; ++other) {
+      const double volume = bounds[other].size().prod();
+      if (other == k || volume <= largest || !bounds[other].contains(bounds[k].min) ||
+          !bounds[other].contains(bounds[k].max) || !liesWithin(mesh, parts[k], parts[other]))
+        continue;
+      result[k] = other;
+      largest = volume;
+    }
+  }
+  return result;
+}
+
+/// Which parts of a closed mesh have to be turned for the outermost ones to face outwards. Those within them
+/// keep how they face relative to them: inwards is the wall of a hollow.
+std::vector<bool> turnsOfClosed(const TriangleMesh& mesh, const std::vector<Part>& parts,
+                                const std::vector<bool>& byMost, std::vector<std::string>& notes) {
+  const std::vector<std::size_t> around = outermost(mesh, parts);
+  std::vector<bool> flips;
+  std::size_t needless = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::size_t outer = around[k];
+    const bool flip = signedVolume(mesh, parts[outer]) < 0;
+    const bool inverted = flip != byMost[outer];
+    flips.push_back(outer == k ? flip : byMost[k] != inverted);
+    if (outer != k && (signedVolume(mesh, parts[k]) < 0) == flips[k]) ++needless;
+  }
+  if (needless > 0)
+    notes.push_back(counted(needless, "part lies", "parts lie") +
+                    " within others and face outwards as those do, which changes nothing: for a hollow, turn "
+                    "their triangles round");
+  return flips;
+}
 
 void orient(TriangleMesh& mesh, std::vector<Part>& parts, bool closed, std::vector<std::string>& notes) {
+  std::vector<bool> flips;
+  for (const Part& part : parts) {
+    const auto opposed = static_cast<std::size_t>(std::count(part.turned.begin(), part.turned.end(), true));
+    flips.push_back(2 * opposed > part.turned.size());
+  }
+  if (closed) flips = turnsOfClosed(mesh, parts, flips, notes);
   std::size_t turned = 0;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    Part& part = parts[k];
-    bool flip = false;
-    if (closed) {
-      int depth = 0;
-      for (std::size_t other = 0; other < parts.size() && parts.size() <= kMostNestedParts; ++other)
-        if (other != k && liesWithin(mesh, part, parts[other])) ++depth;
-      // A part within another one is the wall of a hollow.
-      flip = (signedVolume(mesh, part) < 0) != (depth % 2 == 1);
-    } else {
-      const auto opposed = static_cast<std::size_t>(std::count(part.turned.begin(), part.turned.end(), true));
-      flip = 2 * opposed > part.turned.size();
-    }
+    const Part& part = parts[k];
     for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-      if (part.turned[t] == flip) continue;
+      if (part.turned[t] == flips[k]) continue;
       Triangle& triangle = mesh.triangles[part.triangles[t]];
       std::swap(triangle[1], triangle[2]);
       ++turned;
@@ -236,25 +375,65 @@ void orient(TriangleMesh& mesh, std::vector<Part>& parts, bool closed, std::vect
                     " turned to face outwards as the others do");
 }
 
+/// Leaves out pairs of triangles with the same corners that face each other's backs: where parts touch.
+void dropShared(TriangleMesh& mesh, std::vector<std::string>& notes) {
+  std::map<Triangle, std::array<std::vector<std::uint32_t>, 2>> byCorners;
+  for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+    Triangle t = mesh.triangles[k];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    const std::size_t way = t[1] < t[2] ? 0 : 1;
+    if (way == 1) std::swap(t[1], t[2]);
+    byCorners[t][way].push_back(k);
+  }
+  std::set<std::uint32_t> dropped;
+  for (const auto& [corners, ways] : byCorners)
+    for (std::size_t k = 0; k < std::min(ways[0].size(), ways[1].size()); ++k)
+      dropped.insert({ways[0][k], ways[1][k]});
+  if (dropped.empty()) return;
+  std::vector<Triangle> kept;
+  for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k)
+    if (!dropped.contains(k)) kept.push_back(mesh.triangles[k]);
+  mesh.triangles = std::move(kept);
+  notes.push_back(std::to_string(dropped.size()) + " triangles where parts touch were left out");
+}
+
 }  // namespace
 
 bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes) {
   weld(mesh);
-  dropUseless(mesh, notes);
+  weldNear(mesh, notes);
+  dropFlat(mesh, notes);
+  dropVertices(mesh);
+  std::vector<Triangle> all = std::move(mesh.triangles);
+  mesh.triangles = withoutRepeated(all);
   if (mesh.triangles.size() < 4)
     throw InputError(place, "expected at least 4 triangles, found " + std::to_string(mesh.triangles.size()) +
                                 "; a box or a plane is a shape of its own");
-  const Edges edges(mesh, place);
+  Edges edges(mesh);
+  const Edges::Found odd = edges.odd(mesh);
+  if (odd.count > 0) {
+    // Parts that touch have triangles with the same corners, one of each.
+    std::swap(mesh.triangles, all);
+    edges = Edges(mesh);
+    if (edges.odd(mesh).count > 0)
+      throw InputError(place,
+                       "expected edges of two triangles, or of two for each part that touches there (a "
+                       "manifold), found " +
+                           counted(odd.count, "triangle", "triangles") +
+                           " more on edges that have two already, the first at " + at(odd.middle));
+  } else {
+    noteRepeated(all.size() - mesh.triangles.size(), notes);
+  }
   std::vector<Part> parts = connectedParts(mesh, edges, place);
-  Vec3f hole = Vec3f::Zero();
-  const std::size_t open = edges.open(mesh, hole);
-  orient(mesh, parts, open == 0, notes);
-  if (open > 0)
+  const Edges::Found open = edges.open(mesh);
+  orient(mesh, parts, open.count == 0, notes);
+  if (odd.count > 0) dropShared(mesh, notes);
+  if (open.count > 0)
     notes.push_back(
-        "the mesh is open: " + counted(open, "edge has", "edges have") +
-        " a triangle on one side only, the first near " + at(hole) +
+        "the mesh is open: " + counted(open.count, "edge has", "edges have") +
+        " a triangle on one side only, the first near " + at(open.middle) +
         "; inside and outside are known near its surface only, by how most of its triangles are wound");
-  return open == 0;
+  return open.count == 0;
 }
 
 }  // namespace migiwa

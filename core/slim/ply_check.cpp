@@ -1,61 +1,19 @@
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <sstream>
 
 #include "core/slim/shape_import.h"
+#include "core/slim/text_lines.h"
 
 namespace migiwa {
 
 namespace {
 
-/// Text, line by line.
-class Lines {
- public:
-  Lines(std::string_view text, std::size_t before) : rest_(text), number_(before) {}
-
-  /// Goes to the next line that holds something; false when there is none.
-  bool next() {
-    do {
-      if (rest_.empty()) return false;
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      line_ = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      ++number_;
-      skipSpace();
-    } while (line_.empty());
-    return true;
-  }
-  /// The next word of the line; empty at its end.
-  std::string_view word() {
-    const std::size_t end = std::min(line_.find_first_of(kSpace), line_.size());
-    const std::string_view result = line_.substr(0, end);
-    line_.remove_prefix(end);
-    skipSpace();
-    return result;
-  }
-  std::string place() const { return "line " + std::to_string(number_); }
-
- private:
-  static constexpr std::string_view kSpace = " \t\r\v\f";
-  void skipSpace() { line_.remove_prefix(std::min(line_.find_first_not_of(kSpace), line_.size())); }
-
-  std::string_view rest_, line_;
-  std::size_t number_;
-};
-
-template <class Number>
-bool isNumber(std::string_view word, Number& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
 /// What is wrong with the line of one element; empty where nothing is. Strictly: what assimp takes for the
 /// end of a word or of a line, and what for the next number, is its own.
-std::string textFault(const PlyElement& element, Lines& lines) {
+std::string textFault(const PlyElement& element, TextLines& lines) {
   for (const PlyProperty& property : element.properties) {
     std::uint64_t values = 1;
     if (property.listCount.bytes > 0) {
@@ -80,7 +38,7 @@ std::string textFault(const PlyElement& element, Lines& lines) {
 }
 
 std::string textFault(const PlyHeader& header) {
-  Lines lines(header.body, header.lines);
+  TextLines lines(header.body, header.lines);
   std::uint64_t expected = 0, found = 0;
   for (const PlyElement& element : header.elements) expected += element.count;
   for (const PlyElement& element : header.elements)
@@ -181,6 +139,7 @@ bool takeElement(const std::vector<std::string>& words, std::uint64_t most, PlyH
       !lastIsWhole(header))
     return false;
   PlyElement element;
+  element.name = words[1];
   std::istringstream number(words[2]);
   if (!(number >> element.count) || !number.eof() || element.count > most) return false;
   header.elements.push_back(element);
@@ -191,7 +150,7 @@ bool takeProperty(const std::vector<std::string>& words, PlyHeader& header) {
   if (words.size() < 3 || header.elements.empty()) return false;
   const bool list = words[1] == "list";
   if (words.size() != (list ? 5 : 3)) return false;
-  PlyProperty property{typeOf(words[list ? 3 : 1]), list ? typeOf(words[2]) : PlyType()};
+  PlyProperty property{words.back(), typeOf(words[list ? 3 : 1]), list ? typeOf(words[2]) : PlyType()};
   if (property.type.bytes == 0 || (list && !property.listCount.whole)) return false;
   header.elements.back().properties.push_back(property);
   return true;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -27,6 +28,24 @@ Bounds TriangleMesh::bounds() const {
   Bounds bounds;
   for (const Vec3f& vertex : vertices) bounds.include(vertex.cast<double>());
   return bounds;
+}
+
+NearPoints::NearPoints(std::vector<Vec3f> points, double reach)
+    : reach_(reach), points_(std::move(points)), order_(points_.size()) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> cells(points_.size());
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    cells[k] = {keyOf(cellOf(points_[k])), static_cast<std::uint32_t>(k)};
+  std::sort(cells.begin(), cells.end());
+  std::vector<std::uint64_t> keys(cells.size());
+  std::vector<Vec3f> sorted(cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    keys[k] = cells[k].first, order_[k] = cells[k].second, sorted[k] = points_[order_[k]];
+  points_ = std::move(sorted);
+  hash_.build(keys);
+}
+
+NearPoints::Cell NearPoints::cellOf(const Vec3f& p) const {
+  return (p.cast<double>() / reach_).unaryExpr([](double x) { return std::floor(x); }).cast<std::int64_t>();
 }
 
 PointLevels::PointLevels(const std::vector<OrientedPoint>& points) : points_(points) {

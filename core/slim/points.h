@@ -79,6 +79,45 @@ class CellHash {
   std::size_t mask_ = 0, cells_ = 0;
 };
 
+// Points by cells of one edge, so that those near a place are found at the same cost however many there are.
+
+class NearPoints {
+ public:
+  /// `reach` in m, greater than 0.
+  NearPoints(std::vector<Vec3f> points, double reach);
+
+  bool empty() const { return points_.empty(); }
+  /// Calls visit(index) for the points nearer than the reach to p, by their places in the vector that was
+  /// given, until it returns false.
+  template <class Visit>
+  void within(const Vec3f& p, const Visit& visit) const {
+    const Cell cell = cellOf(p);
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const CellHash::Range range = hash_.find(keyOf(cell + Cell(dx, dy, dz)));
+          for (std::uint32_t k = range.begin; k < range.end; ++k)
+            if ((points_[k] - p).cast<double>().squaredNorm() < reach_ * reach_ && !visit(order_[k])) return;
+        }
+  }
+
+ private:
+  using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+  Cell cellOf(const Vec3f& p) const;
+  /// Cells far apart may share a key: distances tell them apart.
+  static std::uint64_t keyOf(const Cell& cell) {
+    constexpr std::uint64_t kBits = (std::uint64_t{1} << 21U) - 1;
+    return (static_cast<std::uint64_t>(cell.x()) & kBits) |
+           (static_cast<std::uint64_t>(cell.y()) & kBits) << 21U |
+           (static_cast<std::uint64_t>(cell.z()) & kBits) << 42U;
+  }
+
+  double reach_;
+  std::vector<Vec3f> points_;         ///< cell by cell
+  std::vector<std::uint32_t> order_;  ///< where each of them was
+  CellHash hash_;
+};
+
 // Oriented points in a fixed random order, and every fourth of them, and every sixteenth, ...: a ball of any
 // size finds about as many points as a fit needs.
 

@@ -46,16 +46,18 @@ void requireFile(const fs::path& file) {
   throw InputError(file.string(), expected + "no such file" + remedy);
 }
 
-void requireWholePly(const fs::path& file) {
+std::string endingOf(const fs::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending != ".ply") return;
+  return ending.empty() ? ending : ending.substr(1);
+}
+
+std::string contentOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream content;
   content << in.rdbuf();
-  if (std::string fault = plyFault(content.view()); !fault.empty())
-    throw InputError(file.string(), std::move(fault));
+  return std::move(content).str();
 }
 
 void requireFinite(const fs::path& file, const Vec3f& p, const char* kind, std::size_t number) {
@@ -136,12 +138,45 @@ Bounds ImportedShape::bounds() const {
   return bounds;
 }
 
-ImportedShape importShape(const fs::path& file) {
-  requireFile(file);
-  requireWholePly(file);
+namespace {
+
+Raw readXyzFile(const fs::path& file, std::string_view content, Vec3d& origin,
+                std::vector<std::string>& notes) {
+  XyzPoints read;
+  if (std::string fault = readXyz(content, read, notes); !fault.empty())
+    throw InputError(file.string(), std::move(fault));
+  Bounds bounds;
+  for (const Vec3d& p : read.positions) bounds.include(p);
+  if (!read.positions.empty() && bounds.center().allFinite()) origin = bounds.center();
+  Raw raw;
+  for (std::size_t k = 0; k < read.positions.size(); ++k) {
+    const Vec3f p = (read.positions[k] - origin).cast<float>();
+    requireFinite(file, p, "point", k);
+    const Vec3f normal = read.normals.empty() ? Vec3f(Vec3f::Zero()) : read.normals[k];
+    raw.points.push_back({p, normal});
+    if (normal.isZero()) ++raw.pointsWithoutNormal;
+  }
+  return raw;
+}
+
+/// `origin`: what the coordinates are relative to.
+Raw readRaw(const fs::path& file, Vec3d& origin, std::vector<std::string>& notes) {
+  const std::string ending = endingOf(file);
+  std::string content;
+  if (ending == "ply" || ending == "stl" || ending == "obj" || ending == "xyz") content = contentOf(file);
+  if (ending == "xyz") return readXyzFile(file, content, origin, notes);
+  std::string fault = ending == "ply"   ? plyFault(content)
+                      : ending == "stl" ? repairStl(content, notes)
+                                        : std::string();
+  if (!fault.empty()) throw InputError(file.string(), std::move(fault));
+  origin = moveToOrigin(content, ending);
   Assimp::Importer importer;
-  // Everything but positions, faces and the normals of points is left out.
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  // Everything but positions, faces and the normals of points is left out. What was changed is read from
+  // memory.
+  const bool changed = ending == "stl" || !origin.isZero();
+  const aiScene* scene = changed
+                             ? importer.ReadFileFromMemory(content.data(), content.size(), 0, ending.c_str())
+                             : importer.ReadFile(file.string(), 0);
   if (scene != nullptr) {
     makeConsistent(file, *scene);
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
@@ -153,11 +188,31 @@ ImportedShape importShape(const fs::path& file) {
                          std::string(importer.GetErrorString()));
   Raw raw;
   addNode(file, *scene, *scene->mRootNode, aiMatrix4x4(), raw);
+  return raw;
+}
 
+/// Puts the shape back where it came from, once all that needs its digits is done.
+void moveBack(ImportedShape& shape, const Vec3d& origin) {
+  if (origin.isZero()) return;
+  const auto move = [&](Vec3f& p) {
+    shape.exact.push_back(p.cast<double>() + origin);
+    p = shape.exact.back().cast<float>();
+  };
+  for (Vec3f& vertex : shape.mesh.vertices) move(vertex);
+  for (OrientedPoint& point : shape.cloud.points) move(point.position);
+}
+
+}  // namespace
+
+ImportedShape importShape(const fs::path& file) {
+  requireFile(file);
   ImportedShape shape;
+  Vec3d origin = Vec3d::Zero();
+  Raw raw = readRaw(file, origin, shape.notes);
   if (!raw.mesh.triangles.empty()) {
     shape.mesh = std::move(raw.mesh);
     shape.closed = repairMesh(shape.mesh, file.string(), shape.notes);
+    moveBack(shape, origin);
     return shape;
   }
   shape.cloud.points = std::move(raw.points);
@@ -168,6 +223,7 @@ ImportedShape importShape(const fs::path& file) {
   }
   shape.closed = repairCloud(shape.cloud.points, file.string(), shape.notes);
   shape.cloud.closed = shape.closed;
+  moveBack(shape, origin);
   return shape;
 }
 
@@ -184,6 +240,36 @@ constexpr double kMostOpen = 0.1;
 
 std::tuple<float, float, float> inOrder(const OrientedPoint& point) {
   return {point.position.x(), point.position.y(), point.position.z()};
+}
+
+/// Points nearer to each other than this share of their extent's diagonal are one.
+constexpr double kSamePlace = 1e-6;
+
+/// Leaves out points at the place of one before them.
+void dropNear(std::vector<OrientedPoint>& points) {
+  points.erase(
+      std::unique(points.begin(), points.end(),
+                  [](const OrientedPoint& a, const OrientedPoint& b) { return inOrder(a) == inOrder(b); }),
+      points.end());
+  Bounds bounds;
+  std::vector<Vec3f> places;
+  for (const OrientedPoint& point : points) {
+    places.push_back(point.position);
+    bounds.include(point.position.cast<double>());
+  }
+  const double reach = kSamePlace * bounds.size().norm();
+  if (!(reach > 0)) return;
+  const NearPoints near(std::move(places), reach);
+  std::vector<bool> dropped(points.size(), false);
+  std::vector<OrientedPoint> kept;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    near.within(points[k].position, [&](std::uint32_t other) {
+      dropped[k] = other < k && !dropped[other];
+      return !dropped[k];
+    });
+    if (!dropped[k]) kept.push_back(points[k]);
+  }
+  points = std::move(kept);
 }
 
 std::size_t turnAgainstNeighbours(std::vector<OrientedPoint>& points) {
@@ -229,10 +315,7 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
   std::stable_sort(points.begin(), points.end(),
                    [](const OrientedPoint& a, const OrientedPoint& b) { return inOrder(a) < inOrder(b); });
   const std::size_t all = points.size();
-  points.erase(
-      std::unique(points.begin(), points.end(),
-                  [](const OrientedPoint& a, const OrientedPoint& b) { return inOrder(a) == inOrder(b); }),
-      points.end());
+  dropNear(points);
   if (points.size() < all)
     notes.push_back(std::to_string(all - points.size()) +
                     " points at the same place as another one were left out");

@@ -12,14 +12,17 @@
 
 namespace migiwa {
 
-// Meshes and oriented point clouds from files: OBJ, PLY, STL and what else assimp reads.
+// Meshes and oriented point clouds from files: OBJ, PLY, STL and what else assimp reads, and points as .xyz.
 
 /// What a file holds, checked and repaired where that is safe: a mesh, or points with normals, which
 /// are estimated where the file has none.
 struct ImportedShape {
-  TriangleMesh mesh;               ///< no triangles: the file holds points
-  OrientedPoints cloud;            ///< no points: the file holds a mesh
-  bool closed = true;              ///< encloses a solid
+  TriangleMesh mesh;     ///< no triangles: the file holds points
+  OrientedPoints cloud;  ///< no points: the file holds a mesh
+  bool closed = true;    ///< encloses a solid
+  /// The mesh's vertices, or the points, in double where floats do not hold what the file says: far from the
+  /// origin. Empty elsewhere.
+  std::vector<Vec3d> exact;
   std::vector<std::string> notes;  ///< what was repaired, and what is probably not meant; one sentence each
 
   bool isMesh() const { return !mesh.triangles.empty(); }
@@ -44,10 +47,12 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
 
 // Makes a mesh as files hold them into one that has an inside and an outside.
 
-/// Welds vertices at the same place, drops triangles that are degenerate or there twice, and turns triangles
-/// so that all face outwards. Adds a sentence to `notes` for each kind of repair, and for an open mesh.
-/// Returns whether the mesh is closed. Throws InputError at `place` for fewer than 4 triangles, edges of more
-/// than two triangles and surfaces with one side only.
+/// Welds vertices within a millionth of the mesh's diagonal, drops triangles that are degenerate, there twice
+/// or shared by two parts that touch, and turns triangles so that the outermost parts face outwards; a closed
+/// part within another keeps how it faces relative to that one: inwards is the wall of a hollow. Adds a
+/// sentence to `notes` for each kind of repair, and for an open mesh. Returns whether the mesh is closed.
+/// Throws InputError at `place` for fewer than 4 triangles, edges at which triangles are no pairs and
+/// surfaces with one side only.
 bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
 
 // Normals for points that have none, or none that agree: planes through neighbours, whose sides are made to
@@ -63,6 +68,31 @@ void estimateNormals(std::vector<OrientedPoint>& points, const std::string& plac
 /// Turns normals so that they agree and face outwards. Returns how many were turned; none where they agree
 /// already, and none where it cannot be decided.
 std::size_t orientNormals(std::vector<OrientedPoint>& points);
+
+// Text that says more digits than a float holds, as coordinates of maps do: it is moved to the origin before
+// anything is read from it.
+
+/// Where the middle of the shape lies that a file of this content and ending (lower case, no dot) holds, if
+/// that is so far from the origin that floats do not hold the shape; then moves the coordinates of the
+/// content there. Zero elsewhere, for files that hold floats only, and for those whose numbers are none.
+Vec3d moveToOrigin(std::string& content, std::string_view ending);
+
+// Points as text, a line each: x y z, or x y z nx ny nz.
+
+struct XyzPoints {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3f> normals;  ///< unit, or zero; none where the file has none
+};
+
+/// Takes comments from # on, and how many points follow in the first line. Returns what is wrong, as
+/// "expected ..., found ..."; empty where nothing is. Adds a sentence to `notes` for what is left out.
+std::string readXyz(std::string_view content, XyzPoints& points, std::vector<std::string>& notes);
+
+// STL files that others write: keywords in capitals, and counts of triangles that are wrong.
+
+/// Makes the content one that is read as what it is where that is certain, and adds a sentence to `notes`.
+/// Returns what is wrong elsewhere, as "expected ..., found ..."; empty where nothing is.
+std::string repairStl(std::string& content, std::vector<std::string>& notes);
 
 // Whether a PLY file holds all that its header promises. assimp 5.2 never comes back from a header that does
 // not end, makes up zeros for what is missing of the rest, and asks for memory for as many corners as a face
@@ -82,11 +112,13 @@ struct PlyType {
 
 /// One number of an element, or a list of them: how many, then so many.
 struct PlyProperty {
+  std::string name;
   PlyType type;
   PlyType listCount;  ///< of no bytes: a single number
 };
 
 struct PlyElement {
+  std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 };

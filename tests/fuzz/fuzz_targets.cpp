@@ -82,7 +82,7 @@ void obj(std::string_view input) {
 /// The first byte picks the ending.
 void mesh(std::string_view input) {
   if (input.empty()) return;
-  constexpr std::array<const char*, 2> kEndings{".stl", ".ply"};
+  constexpr std::array<const char*, 3> kEndings{".stl", ".ply", ".xyz"};
   const std::string ending = kEndings[static_cast<unsigned char>(input.front()) % kEndings.size()];
   refusedOrRead([&] { importShape(fileWith(input.substr(1), ending)); });
 }

@@ -46,14 +46,30 @@ TEST(BoxSource, CentresLieHalfASpacingInsideTheCorners) {
   EXPECT_NEAR(smallestDistance(centers), 0.1, 1e-12);
 }
 
-TEST(BoxSource, RoundsItsLengthsToWholeCellsFromTheLowerCorner) {
-  // 2.4, 2.6 and 0.6 cells.
-  const BoxSource box({0, 0, 0}, {0.24, 0.26, 0.06});
-  EXPECT_EQ(box.count(0.1), 2 * 3 * 1);
+TEST(BoxSource, HasTheWholeCellsThatFitFromTheLowerCorner) {
+  // 2.4, 2.6 and 1.99999999 cells; the last is what decimal numbers make of 2.
+  const BoxSource box({0, 0, 0}, {0.24, 0.26, 0.199999999});
+  EXPECT_GE(box.count(0.1), 2 * 2 * 2);
   const auto centers = filled(box, 0.1);
-  ASSERT_EQ(centers.size(), 6U);
+  ASSERT_EQ(centers.size(), 8U);
   EXPECT_TRUE(centers.front().isApprox(Vec3d(0.05, 0.05, 0.05)));
-  EXPECT_TRUE(centers.back().isApprox(Vec3d(0.15, 0.25, 0.05)));
+  EXPECT_TRUE(centers.back().isApprox(Vec3d(0.15, 0.15, 0.15)));
+  EXPECT_TRUE(box.leftOver(0.1).isApprox(Vec3d(0.04, 0.06, 0), 1e-6));
+}
+
+TEST(BoxSource, IsNeverFilledBeyondMax) {
+  for (int k = 1; k < 2000; ++k) {
+    const double length = 0.001 * k, spacing = 0.013 + 1e-5 * k;
+    const BoxSource box({-1, 2, 5}, {-1 + length, 2 + 0.1, 5 + 0.1});
+    const auto centers = filled(box, spacing);
+    EXPECT_GE(box.count(spacing), static_cast<double>(centers.size())) << k;
+    double last = -1;
+    for (const Vec3d& p : centers) last = std::max(last, p.x() + 0.5 * spacing);
+    ASSERT_LE(last, -1 + length + 2e-6 * spacing) << k;
+    if (length >= spacing) {
+      ASSERT_GT(last, -1 + length - spacing) << k << ": a cell more has room";
+    }
+  }
 }
 
 TEST(BoxSource, ThinnerThanHalfACellIsEmpty) {

@@ -28,16 +28,16 @@ bool inside(const TriangleMesh& mesh, const Vec3d& at) {
   return std::abs(angle) > 2 * std::numbers::pi;
 }
 
-/// Every cell of the bounding box, by z, then y, then x.
-std::vector<Vec3d> filledByCounting(const TriangleMesh& mesh, double spacing) {
-  const Eigen::Array3d cells = (mesh.bounds().size() / spacing).array().round();
-  const Vec3d first = mesh.bounds().center() - 0.5 * spacing * (cells - 1).matrix();
+/// Every cell of the bounding box and one more, by z, then y, then x, of the lattice with a cell at `center`.
+std::vector<Vec3d> filledByCounting(const TriangleMesh& mesh, double spacing, const Vec3d& center) {
+  const Eigen::Array3d cells = (mesh.bounds().size() / spacing).array().round() + 1;
+  Vec3d first = mesh.bounds().center() - 0.5 * spacing * (cells - 2).matrix();
+  first -= spacing * movedBy(center, first, spacing);
   std::vector<Vec3d> centers;
   for (double k = 0; k < cells.z(); ++k)
     for (double j = 0; j < cells.y(); ++j)
       for (double i = 0; i < cells.x(); ++i)
-        if (const Vec3d center = first + spacing * Vec3d(i, j, k); inside(mesh, center))
-          centers.push_back(center);
+        if (const Vec3d at = first + spacing * Vec3d(i, j, k); inside(mesh, at)) centers.push_back(at);
   return centers;
 }
 
@@ -77,11 +77,32 @@ TEST(MeshFill, FillsTheCellsThatACountOfAllFindsInTheirOrder) {
     for (const double spacing : {0.05, 0.031}) {
       std::vector<Vec3d> centers;
       fillMesh(mesh, spacing, centers);
-      const std::vector<Vec3d> expected = filledByCounting(mesh, spacing);
+      const std::vector<Vec3d> expected = filledByCounting(mesh, spacing, centers[0]);
       ASSERT_GT(expected.size(), 50U);
       ASSERT_EQ(centers.size(), expected.size());
       for (std::size_t k = 0; k < centers.size(); ++k)
         ASSERT_LT((centers[k] - expected[k]).norm(), 1e-9) << k;
+    }
+}
+
+TEST(MeshFill, HoldsTheVolumeOfABoxThatIsNoMultipleOfTheSpacing) {
+  // Half a cell beside ten is 5 % of the volume along each axis.
+  for (const double length : {0.523, 0.55, 0.577, 0.61})
+    for (const double height : {0.5, 0.53, 0.57}) {
+      const TriangleMesh mesh = boxMesh({1, 2, 3}, {length, 0, 0}, {0, height, 0}, {0, 0, length});
+      std::vector<Vec3d> centers;
+      fillMesh(mesh, 0.05, centers);
+      const double volume = length * length * height, cell = 0.05 * 0.05 * 0.05;
+      // A lattice has whole layers: what the nearest numbers of them along each axis make is as near as it
+      // gets.
+      double least = volume;
+      for (const double i : {std::floor(length / 0.05), std::ceil(length / 0.05)})
+        for (const double j : {std::floor(height / 0.05 + 1e-6), std::ceil(height / 0.05 - 1e-6)})
+          for (const double k : {std::floor(length / 0.05), std::ceil(length / 0.05)})
+            least = std::min(least, std::abs(i * j * k * cell - volume));
+      EXPECT_LE(std::abs(static_cast<double>(centers.size()) * cell - volume),
+                std::max(least + 1e-9, 0.01 * volume))
+          << length << ' ' << height;
     }
 }
 

@@ -1,64 +1,28 @@
 // Meshes and clouds from files, good and bad.
 #include "core/slim/shape_import.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <numbers>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "core/base/messages.h"
 #include "core/slim/fit.h"
 #include "tests/slim/exact_shapes.h"
+#include "tests/slim/import_fixture.h"
 
 namespace migiwa {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A file in a folder of the test's own.
-class ShapeImport : public ::testing::Test {
- protected:
-  ShapeImport() {
-    folder_ = fs::temp_directory_path() / (std::string("migiwa_shape_import_") +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  ~ShapeImport() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-  std::string faultOf(const fs::path& file) const {
-    try {
-      importShape(file);
-    } catch (const InputError& error) {
-      const std::string text = error.what();
-      EXPECT_TRUE(text.starts_with(file.string() + ": ")) << text;
-      return text.substr(std::min(text.size(), file.string().size() + 2));
-    }
-    return "accepted";
-  }
-
-  fs::path folder_;
-};
-
-const std::string kCubeVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
-/// Outward.
-const std::string kCubeFaces = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
-
-double volumeOf(const TriangleMesh& mesh) {
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    volume += mesh.vertices[a].cast<double>().dot(
-                  mesh.vertices[b].cast<double>().cross(mesh.vertices[c].cast<double>())) /
-              6;
-  return volume;
-}
+using namespace testing;
 
 TEST_F(ShapeImport, ReadsACube) {
   const ImportedShape cube = importShape(write("cube.obj", kCubeVertices + kCubeFaces));
@@ -95,15 +59,68 @@ TEST_F(ShapeImport, TurnsFacesThatFaceTheOtherWay) {
   EXPECT_NEAR(volumeOf(importShape(write("all.obj", kCubeVertices + allFlipped)).mesh), 1, 1e-6);
 }
 
-TEST_F(ShapeImport, AHollowFacesItsInside) {
+TEST_F(ShapeImport, AHollowIsAPartWithinAnotherThatFacesTheOtherWay) {
   std::string inner;
   for (const char* corner : {"1 1 1", "2 1 1", "2 2 1", "1 2 1", "1 1 2", "2 1 2", "2 2 2", "1 2 2"})
     inner += std::string("v ") + corner + "\n";
   const std::string outer = "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 0 0 3\nv 3 0 3\nv 3 3 3\nv 0 3 3\n";
-  const std::string innerFaces =
+  const std::string outwards =
       "f 9 12 11 10\nf 13 14 15 16\nf 9 10 14 13\nf 11 12 16 15\nf 10 11 15 14\nf 9 13 16 12\n";
-  const ImportedShape shape = importShape(write("hollow.obj", outer + inner + kCubeFaces + innerFaces));
-  EXPECT_NEAR(volumeOf(shape.mesh), 26, 1e-5);
+  const std::string inwards =
+      "f 10 11 12 9\nf 16 15 14 13\nf 13 14 10 9\nf 15 16 12 11\nf 14 15 11 10\nf 12 16 13 9\n";
+  const std::string turnedOuter = "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\nf 7 8 4 3\nf 6 7 3 2\nf 4 8 5 1\n";
+  const auto volume = [&](const std::string& faces) {
+    return volumeOf(importShape(write("hollow.obj", outer + inner + faces)).mesh);
+  };
+  EXPECT_NEAR(volume(kCubeFaces + inwards), 26, 1e-5);
+  EXPECT_NEAR(volume(turnedOuter + outwards), 26, 1e-5) << "the whole file inside out";
+  // Twice inside is inside: the volume counts what lies in both twice.
+  EXPECT_NEAR(volume(kCubeFaces + outwards), 28, 1e-5);
+  const ImportedShape solid = importShape(write("solid.obj", outer + inner + kCubeFaces + outwards));
+  ASSERT_EQ(solid.notes.size(), 1U);
+  EXPECT_TRUE(solid.notes[0].starts_with("1 part lies within others and face outwards"));
+}
+
+TEST_F(ShapeImport, PartsMayTouch) {
+  const auto cube = [](double x, double y, double z) {
+    std::string text;
+    for (int k = 0; k < 8; ++k)
+      text += "v " + std::to_string(x + (((k + 1) & 2) >> 1)) + " " + std::to_string(y + ((k & 2) >> 1)) +
+              " " + std::to_string(z + (k >> 2)) + "\n";
+    return text;
+  };
+  const auto faces = [](int first, const std::string& order) {
+    // Every quad begins at another corner where `order` says so, and is cut along its other diagonal.
+    std::string text;
+    for (const auto& quad : {std::array{1, 4, 3, 2}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
+                             std::array{3, 4, 8, 7}, std::array{2, 3, 7, 6}, std::array{1, 5, 8, 4}}) {
+      text += "f";
+      for (std::size_t k = 0; k < 4; ++k)
+        text += " " + std::to_string(first + quad[(k + (order == "other" ? 1 : 0)) % 4]);
+      text += "\n";
+    }
+    return text;
+  };
+  for (const std::string order : {"same", "other"}) {
+    for (const auto& [x, y, z] : {std::array{1, 0, 0}, std::array{1, 1, 0}, std::array{1, 1, 1}}) {
+      const ImportedShape shape = importShape(
+          write("touching.obj", cube(0, 0, 0) + cube(x, y, z) + faces(0, "same") + faces(8, order)));
+      EXPECT_TRUE(shape.closed) << order << x << y << z;
+      EXPECT_NEAR(volumeOf(shape.mesh), 2, 1e-6) << order << x << y << z;
+    }
+    // All around an edge, and around a corner.
+    std::string all, around;
+    for (int k = 0; k < 8; ++k) {
+      all += cube(k & 1, k >> 1 & 1, k >> 2);
+      around += faces(8 * k, order);
+    }
+    const ImportedShape block = importShape(write("block.obj", all + around));
+    EXPECT_TRUE(block.closed);
+    EXPECT_NEAR(volumeOf(block.mesh), 8, 1e-6) << order;
+  }
+  const ImportedShape same =
+      importShape(write("shared.obj", cube(0, 0, 0) + cube(1, 0, 0) + faces(0, "same") + faces(8, "other")));
+  EXPECT_TRUE(same.closed);
 }
 
 TEST_F(ShapeImport, PartsThatCrossAreNoHollows) {
@@ -157,10 +174,10 @@ TEST_F(ShapeImport, RefusesWhatIsNoSurface) {
 }
 
 TEST_F(ShapeImport, RefusesEdgesOfThreeTriangles) {
-  EXPECT_EQ(faultOf(write("fin.obj", kCubeVertices + "v 3 0 0\n" + kCubeFaces + "f 1 2 9\n")),
-            "expected edges of at most two triangles (a manifold), found 1 triangle more on edges that have "
-            "two already, "
-            "the first at (0.5, 0, 0)");
+  EXPECT_EQ(
+      faultOf(write("fin.obj", kCubeVertices + "v 3 0 0\n" + kCubeFaces + "f 1 2 9\n")),
+      "expected edges of two triangles, or of two for each part that touches there (a manifold), found 1 "
+      "triangle more on edges that have two already, the first at (0.5, 0, 0)");
 }
 
 TEST_F(ShapeImport, RefusesAMoebiusStrip) {

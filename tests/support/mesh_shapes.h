@@ -122,4 +122,13 @@ inline double windingNumber(const TriangleMesh& mesh, const Vec3d& p) {
   return sum / (4 * std::numbers::pi);
 }
 
+/// By how many cells, quarters below 1, a lattice with a cell at `center` lies below one with a cell at
+/// `first`.
+inline Vec3d movedBy(const Vec3d& center, const Vec3d& first, double spacing) {
+  return ((first - center) / spacing).unaryExpr([](double cells) {
+    const double quarters = std::round(4 * cells);
+    return (quarters - 4 * std::floor(quarters / 4)) / 4;
+  });
+}
+
 }  // namespace migiwa::testing
