@@ -10,10 +10,12 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
 #include <vector>
 
 #include <Eigen/Core>
@@ -158,6 +160,54 @@ std::span<const std::string_view> registryNames() {
     return names;
   }();
   return kNames;
+}
+
+// Lists of objects of various shapes, each named by its key "shape".
+
+/// The place in `names` of the shape that `object` is, found by its type.
+template <class T>
+int shapeOf(const T& object, std::span<const std::string_view> names, std::unique_ptr<T> (*make)(int)) {
+  for (int shape = 0; shape < static_cast<int>(names.size()); ++shape) {
+    const std::unique_ptr<T> example = make(shape);
+    const T& candidate = *example;
+    if (typeid(candidate) == typeid(object)) return shape;
+  }
+  return -1;
+}
+
+inline constexpr std::string_view kShapeKey = "shape";
+inline constexpr FieldDoc kShapeDoc{"", "What it is.", Presence::required};
+
+/// The objects that `makeOne` makes, by the names of their shapes.
+template <class T>
+struct Shapes {
+  std::span<const std::string_view> names;
+  std::unique_ptr<T> (*makeOne)(int);
+};
+
+/// A list of objects whose "shape" says what they are: each is described by its shape, by `more` and, after
+/// the keys that depend on the shape, by `common`. What is read is added to `objects`.
+template <class T, class Visitor, class More, class Common>
+void describeShapes(Visitor& visitor, std::string_view key, const FieldDoc& doc,
+                    Visited<Visitor, std::vector<std::shared_ptr<const T>>>& objects, const Shapes<T>& shapes,
+                    const More& more, const Common& common) {
+  visitor.list(key, objects.size(), doc, [&](Visitor& element, std::size_t at) {
+    std::shared_ptr<Visited<Visitor, T>> object;
+    int shape = -1;
+    if constexpr (!Visitor::kChanges) {
+      object = objects[at];
+      shape = shapeOf(*object, shapes.names, shapes.makeOne);
+      if (shape < 0) return;  // not one that a scene can name
+    }
+    element.variant(kShapeKey, shape, shapes.names, kShapeDoc, [&](Visitor& fields, int picked) {
+      if constexpr (Visitor::kChanges) object = shapes.makeOne(picked);
+      object->describe(fields);
+      more(fields, *object);
+    });
+    if (object == nullptr) return;
+    common(element, *object);
+    if constexpr (Visitor::kChanges) objects.push_back(std::move(object));
+  });
 }
 
 // A turn about an axis through something's centre, as scenes write it.

@@ -137,15 +137,19 @@ class AutoGamma final : public GammaMethod {
     // Every plane of every surface, wherever it is.
     for (const auto& surface : boundary_.surfaces())
       surface->pieces(Vec3f::Zero(), std::numeric_limits<float>::infinity(), pieces);
-    for (const WallPiece& a : pieces)
-      for (const WallPiece& b : pieces)
-        if (!acrossEachOther(a.normal, b.normal)) return false;
+    std::vector<Vec3f> normals;
+    for (const WallPiece& piece : pieces) {
+      if (std::find(normals.begin(), normals.end(), piece.normal) != normals.end()) continue;
+      for (const Vec3f& other : normals)
+        if (!acrossEachOther(piece.normal, other)) return false;
+      normals.push_back(piece.normal);
+    }
     return true;
   }
 
   Pick pick(const Vec3f& p, HalfSpaces& walls) const {
     if (grid_ != nullptr && grid_->covers(p)) return kDirections;
-    for (const auto& surface : boundary_.surfaces()) {
+    for (const Surface* surface : boundary_.near(p, support_)) {
       if (surface->planar()) continue;
       Vec3f normal;
       if (surface->distance(p, normal) < support_) return kDirections;

@@ -73,10 +73,10 @@ class DirectionsGamma final : public GammaMethod {
     hits.assign(directions_.size(), support_);
     scratch.near.clear();
     bool planar = true;
-    for (const auto& surface : boundary_.surfaces()) {
+    for (const Surface* surface : boundary_.near(p, support_)) {
       Vec3f ignored;
       if (surface->distance(p, ignored) >= support_) continue;
-      scratch.near.push_back(surface.get());
+      scratch.near.push_back(surface);
       planar = planar && surface->planar();
       if (!surface->passable(support_)) surface->firstHits(p, directions_, hits);
     }

@@ -55,13 +55,14 @@ void HalfSpaces::collect(const Boundary& boundary, const Vec3f& p, float support
   blocks.clear();
   thinRim = false;
   const float inverse = 1 / supportRadius;
-  for (const auto& surface : boundary.surfaces()) {
+  const std::span<const Surface* const> near = boundary.near(p, supportRadius);
+  for (const Surface* surface : near) {
     if (surface->pieceRule() != PieceRule::fluidInsideAll) continue;
     pieces_.clear();
     surface->pieces(p, supportRadius, pieces_);
     for (const WallPiece& piece : pieces_) intersect(tanks, {piece.normal, piece.planeDistance * inverse});
   }
-  for (const auto& surface : boundary.surfaces()) {
+  for (const Surface* surface : near) {
     if (surface->pieceRule() != PieceRule::solidInsideAll) continue;
     pieces_.clear();
     surface->pieces(p, supportRadius, pieces_);

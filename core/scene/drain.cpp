@@ -10,8 +10,7 @@ namespace migiwa {
 
 namespace {
 
-constexpr std::string_view kShapeKey = "shape";
-constexpr FieldDoc kShapeDoc{"", "Of the region.", Presence::required};
+constexpr FieldDoc kRegionDoc{"", "Of the region.", Presence::required};
 
 }  // namespace
 
@@ -34,13 +33,13 @@ void Drain::fields(Visitor& visitor, Visited<Visitor, Drain>& self) {
 }
 
 void Drain::describe(FieldWriter& visitor) const {
-  visitor.variant(kShapeKey, static_cast<int>(shape), kDrainShapeNames, kShapeDoc,
+  visitor.variant(kShapeKey, static_cast<int>(shape), kDrainShapeNames, kRegionDoc,
                   [this](FieldWriter& region, int) { fields(region, *this); });
 }
 
 void Drain::describe(FieldVisitor& visitor, double spacing) {
   int picked = static_cast<int>(shape);
-  visitor.variant(kShapeKey, picked, kDrainShapeNames, kShapeDoc, [&](FieldVisitor& region, int index) {
+  visitor.variant(kShapeKey, picked, kDrainShapeNames, kRegionDoc, [&](FieldVisitor& region, int index) {
     shape = static_cast<DrainShape>(index);
     fields(region, *this);
     check(region, spacing);

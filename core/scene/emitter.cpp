@@ -47,8 +47,7 @@ std::vector<std::array<double, 2>> discLattice(double radius) {
   return best;
 }
 
-constexpr std::string_view kShapeKey = "shape";
-constexpr FieldDoc kShapeDoc{"", "Of its mouth.", Presence::required};
+constexpr FieldDoc kMouthDoc{"", "Of its mouth.", Presence::required};
 
 }  // namespace
 
@@ -75,13 +74,13 @@ void Emitter::fields(Visitor& visitor, Visited<Visitor, Emitter>& self) {
 }
 
 void Emitter::describe(FieldWriter& visitor) const {
-  visitor.variant(kShapeKey, static_cast<int>(shape), kMouthShapeNames, kShapeDoc,
+  visitor.variant(kShapeKey, static_cast<int>(shape), kMouthShapeNames, kMouthDoc,
                   [this](FieldWriter& mouth, int) { fields(mouth, *this); });
 }
 
 void Emitter::describe(FieldVisitor& visitor, double spacing) {
   int picked = static_cast<int>(shape);
-  visitor.variant(kShapeKey, picked, kMouthShapeNames, kShapeDoc, [&](FieldVisitor& mouth, int index) {
+  visitor.variant(kShapeKey, picked, kMouthShapeNames, kMouthDoc, [&](FieldVisitor& mouth, int index) {
     shape = static_cast<MouthShape>(index);
     fields(mouth, *this);
     check(mouth, spacing);

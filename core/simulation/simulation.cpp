@@ -24,8 +24,11 @@ namespace {
 
 Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
   const Activity activity("measuring distances to the walls");
-  return Boundary(withDistanceGrids(scene.surfaces, static_cast<float>(scene.supportRadius()), pool,
-                                    scene.file.string() + ":/boundary/surfaces"));
+  const auto support = static_cast<float>(scene.supportRadius());
+  Boundary walls(
+      withDistanceGrids(scene.surfaces, support, pool, scene.file.string() + ":/boundary/surfaces"));
+  walls.indexWalls(support);
+  return walls;
 }
 
 /// Of the fluid along gravity (m); 0 without either.
@@ -65,7 +68,7 @@ void Simulation::State::configure(const Settings& settings) {
     walls.put(wallsOf(changed, pool));
     boundary.moveTo(time, time);
   }
-  std::vector<const Surface*> thin = migiwa::thinWalls(boundary, supportRadius), barring;
+  WallIndex thin = migiwa::thinWalls(boundary, supportRadius), barring;
   if (step.guards) barring = migiwa::collisionWalls(boundary, supportRadius);
   const RestingLattice lattice = restingLattice(changed.solver.kernel, changed.solver.supportRatio);
   PickedGamma picked;
@@ -100,8 +103,8 @@ void Simulation::State::configure(const Settings& settings) {
   step.gravity = scene.gravity.cast<float>();
   step.spacing = static_cast<float>(scene.particleSpacing);
   step.supportRadius = supportRadius;
-  step.thinWalls.swap(thin);
-  step.collisionWalls.swap(barring);
+  step.thinWalls = std::move(thin);
+  step.collisionWalls = std::move(barring);
   step.lattice = lattice;
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();

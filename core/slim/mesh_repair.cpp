@@ -406,9 +406,7 @@ bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::s
   dropVertices(mesh);
   std::vector<Triangle> all = std::move(mesh.triangles);
   mesh.triangles = withoutRepeated(all);
-  if (mesh.triangles.size() < 4)
-    throw InputError(place, "expected at least 4 triangles, found " + std::to_string(mesh.triangles.size()) +
-                                "; a box or a plane is a shape of its own");
+  if (mesh.triangles.empty()) throw InputError(place, "expected triangles with an area, found none");
   Edges edges(mesh);
   const Edges::Found odd = edges.odd(mesh);
   if (odd.count > 0) {
@@ -432,7 +430,8 @@ bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::s
     notes.push_back(
         "the mesh is open: " + counted(open.count, "edge has", "edges have") +
         " a triangle on one side only, the first near " + at(open.middle) +
-        "; inside and outside are known near its surface only, by how most of its triangles are wound");
+        "; its triangles as a wall end there and have fluid on both sides, a SLIM surface fitted to it knows "
+        "inside and outside near it only");
   return open.count == 0;
 }
 

@@ -51,7 +51,7 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
 /// or shared by two parts that touch, and turns triangles so that the outermost parts face outwards; a closed
 /// part within another keeps how it faces relative to that one: inwards is the wall of a hollow. Adds a
 /// sentence to `notes` for each kind of repair, and for an open mesh. Returns whether the mesh is closed.
-/// Throws InputError at `place` for fewer than 4 triangles, edges at which triangles are no pairs and
+/// Throws InputError at `place` for no triangles, edges at which triangles are no pairs and
 /// surfaces with one side only.
 bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
 

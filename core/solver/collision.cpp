@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/solver/parameters.h"
 #include "core/solver/state.h"
 #include "core/solver/step.h"
+#include "core/walls/wall_index.h"
 
 namespace migiwa::stages {
 
@@ -92,27 +95,27 @@ void projectAll(StepState& state) {
 
 namespace migiwa {
 
-std::vector<const Surface*> thinWalls(const Boundary& boundary, float supportRadius) {
+WallIndex thinWalls(const Boundary& boundary, float supportRadius) {
   std::vector<const Surface*> thin;
   for (const auto& surface : boundary.surfaces())
     if (surface->thickness() < supportRadius) thin.push_back(surface.get());
-  return thin;
+  return {std::move(thin), supportRadius, false};
 }
 
-std::vector<const Surface*> collisionWalls(const Boundary& boundary, float supportRadius) {
+WallIndex collisionWalls(const Boundary& boundary, float supportRadius) {
   std::vector<const Surface*> barring;
   for (const auto& surface : boundary.surfaces())
     if (surface->thinnestPart() < supportRadius) barring.push_back(surface.get());
   for (const auto& wall : boundary.moving())
     if (std::isfinite(wall->thinnestPart()) && wall->thinnestPart() >= supportRadius)
       barring.push_back(wall.get());
-  return barring;
+  return {std::move(barring), supportRadius, false};
 }
 
-Vec3f clipMove(const std::vector<const Surface*>& walls, const Vec3f& from, bool stepBegan, const Vec3f& to,
-               float margin) {
+Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to, float margin) {
   Vec3f held = to, normal;
-  for (const Surface* wall : walls) {
+  const bool within = (to - from).norm() < walls.reach();
+  for (const Surface* wall : within ? walls.near(from) : walls.all()) {
     const Vec3f start = stepBegan ? wall->carried(from) : from;
     float entry = 0;
     if (held == start || !wall->crosses(start, held, normal, entry)) continue;
@@ -125,19 +128,38 @@ Vec3f clipMove(const std::vector<const Surface*>& walls, const Vec3f& from, bool
 }
 
 void stages::separateNeighbours(StepState& state) {
-  const auto seesAllOf = [&](std::size_t i) {
-    for (const Surface* wall : state.thinWalls)
-      if (wall->thinWithin(state.current[i].xyz(), state.supportRadius, state.supportRadius)) return false;
-    return true;
+  /// A wall near a particle, and the plane that touches it nearest to the particle: points in front of the
+  /// plane are not hidden by a convex wall.
+  struct Near {
+    const Surface* wall;
+    Vec3f normal;
+    float offset;
   };
-  const auto sees = [&](std::size_t i, std::size_t j) {
-    for (const Surface* wall : state.thinWalls)
-      if (wall->hides(state.current[i].xyz(), state.current[j].xyz())) return false;
-    return true;
-  };
+  const float reach = state.supportRadius;
   parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (!seesAllOf(i)) state.neighbours.keep(i, [&](std::size_t j) { return sees(i, j); });
+    std::vector<Near> inReach;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3f p = state.current[i].xyz();
+      inReach.clear();
+      for (const Surface* wall : state.thinWalls.near(p)) {
+        Near near{wall, Vec3f::Zero(), std::numeric_limits<float>::infinity()};
+        if (wall->convex()) {
+          const float distance = wall->distance(p, near.normal);
+          if (distance >= reach) continue;
+          if (distance > 0) near.offset = near.normal.dot(p) - distance;
+        } else if (!wall->thinWithin(p, reach, reach)) {
+          continue;
+        }
+        inReach.push_back(near);
+      }
+      if (inReach.empty()) continue;
+      state.neighbours.keep(i, [&](std::size_t j) {
+        const Vec3f other = state.current[j].xyz();
+        return std::none_of(inReach.begin(), inReach.end(), [&](const Near& near) {
+          return near.normal.dot(other) <= near.offset && near.wall->hides(p, other);
+        });
+      });
+    }
   });
 }
 

@@ -118,8 +118,8 @@ struct StepState : FluidState, StepBuffers, StepRecord {
 
   ThreadPool& pool;
   const Boundary& boundary;
-  std::vector<const Surface*> thinWalls;       ///< thinner than the support radius
-  std::vector<const Surface*> collisionWalls;  ///< of continuous collision: thin walls, and those that move
+  WallIndex thinWalls;       ///< thinner than the support radius
+  WallIndex collisionWalls;  ///< of continuous collision: thin walls, and those that move
   const GammaMethod* gammaMethod = nullptr;    ///< null: no correction
   SolverParameters parameters;
   bool guards = true;             ///< see Guards

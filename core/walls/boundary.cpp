@@ -26,6 +26,13 @@ Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfa
     surface = moving_.back();
   }
   steady_ = standsSteadily();
+  near_ = WallIndex(pointers());
+}
+
+std::vector<const Surface*> Boundary::pointers() const {
+  std::vector<const Surface*> walls;
+  for (const auto& surface : surfaces_) walls.push_back(surface.get());
+  return walls;
 }
 
 bool Boundary::standsSteadily() const {
@@ -37,6 +44,7 @@ Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) 
   Boundary boundary;
   boundary.surfaces_ = std::move(surfaces);
   boundary.steady_ = boundary.standsSteadily();
+  boundary.near_ = WallIndex(boundary.pointers());
   return boundary;
 }
 
@@ -60,7 +68,7 @@ Vec3f Boundary::nearestVelocity(const Vec3f& p) const {
 float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
   float nearest = std::numeric_limits<float>::infinity();
   normal.setZero();
-  for (const auto& surface : surfaces_) {
+  for (const Surface* surface : near(p)) {
     Vec3f n;
     const float d = surface->distance(p, n);
     if (d < nearest) {
@@ -87,7 +95,7 @@ bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
     Vec3f sum = Vec3f::Zero();
     int moves = 0;
     float farthest = 0;
-    for (const auto& surface : surfaces_) {
+    for (const Surface* surface : near(p, margin)) {
       const Vec3f before = p;
       if (!surface->project(p, margin)) continue;
       farthest = std::max(farthest, (p - before).norm());
@@ -116,7 +124,7 @@ bool Boundary::project(Vec3f& p, float margin) const {
   // The shortest way out of one wall leads into another: take the shortest of the other ways that end in the
   // fluid.
   std::vector<Vec3f> ways;
-  for (const auto& surface : surfaces_) surface->otherWaysOut(start, margin, ways);
+  for (const Surface* surface : near(start, margin)) surface->otherWaysOut(start, margin, ways);
   float best = std::numeric_limits<float>::infinity();
   for (Vec3f& way : ways) {
     projectInTurn(way, margin, fits);
@@ -143,6 +151,7 @@ std::unique_ptr<Surface> make() {
 constexpr std::array kShapes{
     Entry{"plane", make<Plane>},           Entry{"box", make<Box>},          Entry{"sphere", make<Sphere>},
     Entry{"polynomial", make<Polynomial>}, Entry{"slim", make<SlimSurface>}, Entry{"mesh", make<MeshSurface>},
+    Entry{"group", make<GroupSurface>},
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/walls/moving.h"
+#include "core/walls/wall_index.h"
 
 namespace migiwa {
 
@@ -35,6 +36,14 @@ class Boundary {
   /// Surface::steadyDistance() holds for all of them.
   bool steady() const { return steady_; }
 
+  /// Prepares near() for a reach (m): worth it before many questions are asked about many walls.
+  void indexWalls(float reach) { near_ = WallIndex(pointers(), reach, true); }
+  /// The walls that come nearer than `reach` (m) to p, and the nearest of all; some more, in the order of
+  /// surfaces().
+  std::span<const Surface* const> near(const Vec3f& p, float reach = 0) const {
+    return reach <= near_.reach() ? near_.near(p) : near_.all();
+  }
+
   bool empty() const { return surfaces_.empty(); }
   const std::vector<std::shared_ptr<const Surface>>& surfaces() const { return surfaces_; }
 
@@ -50,10 +59,12 @@ class Boundary {
   Vec3f nearestVelocity(const Vec3f& p) const;
   bool projectInTurn(Vec3f& p, float margin, bool& fits) const;
   bool standsSteadily() const;
+  std::vector<const Surface*> pointers() const;
 
   std::vector<std::shared_ptr<const Surface>> surfaces_;
   std::vector<std::shared_ptr<MovingSurface>> moving_;  ///< those among them that move
   bool steady_ = true;
+  WallIndex near_;
 };
 
 /// The surfaces as particles of this support radius (m) meet them: Surface::forSupport().

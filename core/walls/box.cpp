@@ -144,7 +144,15 @@ void Box::firstHits(const Vec3f& origin, const Directions& directions, std::span
     }
     return;
   }
+  // A ray has to come through the gap between the origin and the nearest face's plane first.
+  int axis = 0;
+  const float gap = (local.cwiseAbs() - half_).maxCoeff(&axis);
+  const Vec3f towards = std::copysign(1.0F, -local[axis]) * toLocal_.row(axis).transpose();
+  constexpr float kSurely = 0.9999F;
   for (std::size_t k = 0; k < hits.size(); ++k) {
+    const float along =
+        towards.x() * directions.x[k] + towards.y() * directions.y[k] + towards.z() * directions.z[k];
+    if (hits[k] * along < kSurely * gap) continue;
     const auto [enter, leave] = crossing(local, directions, k);
     if (enter < leave && leave > 0) hits[k] = std::min(hits[k], std::max(enter, 0.0F));
   }
@@ -201,6 +209,25 @@ Box::Crossing Box::crossing(const Vec3f& local, const Directions& directions, st
 Vec3d Box::corner(int index) const {
   const Vec3d signs((index & 1) != 0 ? 1 : -1, (index & 2) != 0 ? 1 : -1, (index & 4) != 0 ? 1 : -1);
   return geometry_.center + geometry_.axes * geometry_.halfExtents.cwiseProduct(signs);
+}
+
+bool Box::enclosed(TriangleMesh& mesh) const {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int index = 0; index < 8; ++index) mesh.vertices.emplace_back(corner(index).cast<float>());
+  constexpr std::array<std::array<std::uint32_t, 3>, 12> kFaces{{{0, 2, 1},
+                                                                 {1, 2, 3},
+                                                                 {4, 5, 6},
+                                                                 {5, 7, 6},
+                                                                 {0, 1, 4},
+                                                                 {1, 5, 4},
+                                                                 {2, 6, 3},
+                                                                 {3, 6, 7},
+                                                                 {0, 4, 2},
+                                                                 {2, 4, 6},
+                                                                 {1, 3, 5},
+                                                                 {3, 7, 5}}};
+  for (const auto& [a, b, c] : kFaces) mesh.triangles.push_back({first + a, first + b, first + c});
+  return true;
 }
 
 Bounds Box::bounds() const {

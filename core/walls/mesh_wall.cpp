@@ -10,6 +10,7 @@
 
 #include "core/base/files.h"
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/slim/shape_import.h"
 #include "core/walls/shapes.h"
 
@@ -25,6 +26,7 @@ struct PreparedMesh {
 };
 
 PreparedMesh prepareMesh(const FileName& file, const Transform& transform, bool fluidInside) {
+  const Activity activity("preparing the wall of " + file.path.filename().string());
   ImportedShape shape = importShape(file.path);
   requireUnchanged(file.path, file.identity);
   PreparedMesh result;
@@ -192,15 +194,20 @@ void MeshSurface::prepare(FieldVisitor& visitor) {
   }
 }
 
-std::shared_ptr<const Surface> MeshSurface::forSupport(float supportRadius) const {
-  const auto moving = [this](auto wall) -> std::shared_ptr<const Surface> {
-    wall->motion = motion;
-    return wall;
+std::shared_ptr<const Surface> standFor(const Surface& wall, const std::optional<Motion>& motion,
+                                        float supportRadius) {
+  const auto moving = [&motion](auto made) -> std::shared_ptr<const Surface> {
+    made->motion = motion;
+    return made;
   };
-  if (const auto* triangles = dynamic_cast<const TriangleWall*>(shape_.get()))
+  if (const auto* triangles = dynamic_cast<const TriangleWall*>(&wall))
     return moving(std::make_shared<TriangleWall>(triangles->tree(), triangles->vessel(), supportRadius));
-  if (const auto* box = dynamic_cast<const Box*>(shape_.get())) return moving(std::make_shared<Box>(*box));
-  return moving(std::make_shared<SlimSurface>(dynamic_cast<const SlimSurface&>(*shape_)));
+  if (const auto* box = dynamic_cast<const Box*>(&wall)) return moving(std::make_shared<Box>(*box));
+  return moving(std::make_shared<SlimSurface>(dynamic_cast<const SlimSurface&>(wall)));
+}
+
+std::shared_ptr<const Surface> MeshSurface::forSupport(float supportRadius) const {
+  return standFor(*shape_, motion, supportRadius);
 }
 
 }  // namespace migiwa

@@ -45,6 +45,7 @@ class TriangleWall final : public Surface {
   /// Nothing: the mesh shows it.
   void wireframe(const Bounds&, std::vector<LineSegment>&) const override {}
   WallMesh mesh() const override;
+  bool enclosed(TriangleMesh& mesh) const override;
 
  private:
   void measureThickness();
@@ -81,6 +82,26 @@ class MeshSurface final : public StandIn {
   Fluid fluid_ = Fluid::outside;
   Transform transform_;
 };
+
+// Vessels as one: the fluid is where it is inside of any of them, so that they may open into each other.
+
+class GroupSurface final : public StandIn {
+ public:
+  void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
+  std::shared_ptr<const Surface> forSupport(float supportRadius) const override;
+
+ private:
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, GroupSurface>& self);
+  void unite(FieldVisitor& visitor);
+
+  std::vector<std::shared_ptr<const Surface>> vessels_;
+};
+
+/// A wall that stands for a surface with this motion, for particles of this support radius (m).
+std::shared_ptr<const Surface> standFor(const Surface& wall, const std::optional<Motion>& motion,
+                                        float supportRadius);
 
 /// The box that a mesh of this bounding faces is, to a millionth of its size; null for other shapes.
 std::optional<BoxGeometry> boxOf(const std::vector<WallTriangle>& faces);

@@ -42,6 +42,7 @@ class MovingSurface final : public Surface {
   bool thinWithin(const Vec3f& p, float reach, float supportRadius) const override {
     return rest_->thinWithin(toRest(p), reach, supportRadius);
   }
+  bool convex() const override { return rest_->convex(); }
   bool hides(const Vec3f& from, const Vec3f& to) const override {
     return rest_->hides(toRest(from), toRest(to));
   }

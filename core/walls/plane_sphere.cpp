@@ -183,6 +183,34 @@ bool Sphere::crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& e
   return true;
 }
 
+bool Sphere::enclosed(TriangleMesh& mesh) const {
+  // From pole to pole: with a step of pi / 64 the middles of triangles lie 3e-4 of the radius inside.
+  constexpr std::uint32_t kRings = 64, kAround = 2 * kRings;
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto at = [first](std::uint32_t ring, std::uint32_t k) {
+    if (ring == 0) return first;
+    return ring == kRings ? first + 1 : first + 2 + (ring - 1) * kAround + k % kAround;
+  };
+  const auto vertex = [&](double down, double turn) {
+    const Vec3d unit(portable::sin(down) * portable::sin(turn), portable::cos(down),
+                     portable::sin(down) * portable::cos(turn));
+    mesh.vertices.emplace_back((centerExact_ + radiusExact_ * unit).cast<float>());
+  };
+  vertex(0, 0);
+  vertex(std::numbers::pi, 0);
+  for (std::uint32_t ring = 1; ring < kRings; ++ring)
+    for (std::uint32_t k = 0; k < kAround; ++k)
+      vertex(std::numbers::pi * ring / kRings, 2 * std::numbers::pi * k / kAround);
+  for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+    for (std::uint32_t k = 0; k < kAround; ++k) {
+      if (ring > 0) mesh.triangles.push_back({at(ring, k), at(ring + 1, k), at(ring, k + 1)});
+      if (ring + 1 < kRings)
+        mesh.triangles.push_back({at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1)});
+    }
+  }
+  return true;
+}
+
 Bounds Sphere::bounds() const {
   Bounds bounds;
   bounds.include(centerExact_);

@@ -55,7 +55,9 @@ class Sphere final : public Surface {
   bool reentrant() const override { return fluid_ == Fluid::outside; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
   float thickness() const override;
+  bool convex() const override { return fluid_ == Fluid::outside; }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
+  bool enclosed(TriangleMesh& mesh) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
@@ -91,11 +93,13 @@ class Box final : public Surface {
   bool reentrant() const override { return fluid_ == Fluid::outside; }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
   float thickness() const override;
+  bool convex() const override { return fluid_ == Fluid::outside; }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool planar() const override { return true; }
   PieceRule pieceRule() const override {
     return fluid_ == Fluid::inside ? PieceRule::fluidInsideAll : PieceRule::solidInsideAll;
   }
+  bool enclosed(TriangleMesh& mesh) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
   const BoxGeometry* tank() const override { return fluid_ == Fluid::inside ? &geometry_ : nullptr; }

@@ -195,6 +195,9 @@ class Surface {
     Vec3f ignored;
     return thickness() < supportRadius && distance(p, ignored) < reach;
   }
+  /// Whether the solid is convex: then two points on the fluid's side of one of its tangent planes see each
+  /// other.
+  virtual bool convex() const { return false; }
   /// Whether what is that thin keeps two points of the fluid from being neighbours.
   virtual bool hides(const Vec3f& from, const Vec3f& to) const {
     Vec3f normal;
@@ -218,6 +221,11 @@ class Surface {
   /// Appends the planar pieces whose plane is nearer than `reach` to p, or nothing where the solid is out of
   /// reach. A curved wall has one: the tangent plane at its nearest point.
   virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const;
+
+  /// Appends a closed mesh, its front outwards, around what the shape encloses, be that fluid or solid: exact
+  /// but where it is round, and there within a three-thousandth of its radius. False where it encloses
+  /// nothing.
+  virtual bool enclosed(TriangleMesh& /*mesh*/) const { return false; }
 
   /// The finite extent, empty for a surface without one.
   virtual Bounds bounds() const = 0;
@@ -251,6 +259,7 @@ class StandIn : public Surface {
   bool thinWithin(const Vec3f& p, float reach, float supportRadius) const override {
     return shape_->thinWithin(p, reach, supportRadius);
   }
+  bool convex() const override { return shape_->convex(); }
   bool hides(const Vec3f& from, const Vec3f& to) const override { return shape_->hides(from, to); }
   float thinnestPart() const override { return shape_->thinnestPart(); }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override {
@@ -268,6 +277,7 @@ class StandIn : public Surface {
   WallMesh mesh() const override { return shape_->mesh(); }
   void drawnNodes(std::vector<WallNode>& out) const override { shape_->drawnNodes(out); }
   const BoxGeometry* tank() const override { return shape_->tank(); }
+  bool enclosed(TriangleMesh& mesh) const override { return shape_->enclosed(mesh); }
 
  protected:
   std::shared_ptr<const Surface> shape_;  ///< null: not read yet

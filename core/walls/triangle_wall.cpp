@@ -207,4 +207,16 @@ WallMesh TriangleWall::mesh() const {
   return drawn;
 }
 
+bool TriangleWall::enclosed(TriangleMesh& mesh) const {
+  const std::vector<WallTriangle>& triangles = tree_->triangles();
+  if (std::any_of(triangles.begin(), triangles.end(), [](const WallTriangle& t) { return t.sheet; }))
+    return false;
+  for (const WallTriangle& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), triangle.corners.begin(), triangle.corners.end());
+    mesh.triangles.push_back({first, first + (vessel_ ? 2U : 1U), first + (vessel_ ? 1U : 2U)});
+  }
+  return true;
+}
+
 }  // namespace migiwa

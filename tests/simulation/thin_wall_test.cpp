@@ -92,7 +92,7 @@ TEST(ThinWall, AMoveThatIsHeldBackGoesOnAlongTheWall) {
   const Scene scene = partedTank(0, 0);
   const Boundary boundary(scene.surfaces);
   const auto walls = thinWalls(boundary, 0.1F);
-  ASSERT_EQ(walls.size(), 1U);
+  ASSERT_EQ(walls.all().size(), 1U);
   EXPECT_TRUE(thinWalls(boundary, 0.02F).empty()) << "the plate is thicker than that";
   const Vec3f from(0.37F, 0.2F, 0.1F), to(0.5F, 0.3F, 0.15F);
   const Vec3f held = clipMove(walls, from, false, to, 0.025F);
