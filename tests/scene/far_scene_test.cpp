@@ -154,6 +154,17 @@ TEST_F(FarScene, IsWrittenAsItWasRead) {
                             "/view/camera/eye", "/view/camera/target", "/view/clip/at"})
     EXPECT_EQ(written.at(Json::json_pointer(place)), original.at(Json::json_pointer(place))) << place;
   EXPECT_EQ(sceneTextWith(read, folder_ / "far.json", far), read);
+
+  // A camera that was moved in the window, to where no double is at that distance, is all that changes.
+  Scene turned = far;
+  turned.view.camera.eye = {1.1, 0.9, 4.7};
+  Json changed = Json::parse(sceneTextWith(read, folder_ / "far.json", turned));
+  const auto eye = changed["view"]["camera"]["eye"].get<std::array<double, 3>>();
+  EXPECT_NEAR(eye[0], kFar.x() + 1.1, 1e-10);
+  EXPECT_EQ(eye[1], 0.9);
+  EXPECT_NEAR(eye[2], kFar.z() + 4.7, 1e-11);
+  changed["view"]["camera"] = original["view"]["camera"];
+  EXPECT_EQ(changed, original);
 }
 
 // A ground whose point is at zero, and decimals that no double has.
