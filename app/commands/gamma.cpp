@@ -42,6 +42,12 @@ PickedGamma methodOf(const Scene& scene, const GammaContext& context) {
   return picked.method ? std::move(picked) : makeGammaMethod(scene.boundary.gammaMethod, context);
 }
 
+/// Of coordinates: more than `near` where a scene is far from zero.
+int digitsAt(const Scene& scene, int near) {
+  constexpr int kFar = 15;
+  return scene.origin.isZero(0) ? near : kFar;
+}
+
 void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
   requireWritable(options.out, "--out");
   const std::vector<Vec3d> points = readPoints(options.points);
@@ -49,19 +55,20 @@ void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool&
   const GammaContext context = contextOf(scene, boundary, pool);
   const PickedGamma picked = methodOf(scene, context);
   std::vector<Float4> at(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4(points[i].cast<float>());
+  for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4((points[i] - scene.origin).cast<float>());
   std::vector<GammaSample> samples(points.size());
   parallelFor(pool, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     picked.method->evaluate(std::span(at).subspan(begin, end - begin),
                             std::span(samples).subspan(begin, end - begin));
   });
+  const int digits = digitsAt(scene, 9);
   std::string text = "x,y,z,gamma,gradient_x,gradient_y,gradient_z,distance\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d& p = points[i];
     const Vec3f gradient = samples[i].gradient / context.supportRadius;
     char row[256];
-    std::snprintf(row, sizeof row, "%.9g,%.9g,%.9g,%.7g,%.7g,%.7g,%.7g,%.7g\n", p.x(), p.y(), p.z(),
-                  static_cast<double>(samples[i].gamma), static_cast<double>(gradient.x()),
+    std::snprintf(row, sizeof row, "%.*g,%.*g,%.*g,%.7g,%.7g,%.7g,%.7g,%.7g\n", digits, p.x(), digits, p.y(),
+                  digits, p.z(), static_cast<double>(samples[i].gamma), static_cast<double>(gradient.x()),
                   static_cast<double>(gradient.y()), static_cast<double>(gradient.z()),
                   static_cast<double>(samples[i].distance));
     text += row;
@@ -114,7 +121,11 @@ MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
       throw InputError("--window", "expected x0,y0,x1,y1 in m, the lower left corner first, found '" +
                                        options.window + "'");
   }
-  if (!options.window.empty()) requireMappable(corners);
+  if (!options.window.empty()) {
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      corners[k] -= scene.origin[k % 2 == 0 ? window.across : window.up];
+    requireMappable(corners);
+  }
   window.low[0] = corners[0], window.low[1] = corners[1];
   window.high[0] = corners[2], window.high[1] = corners[3];
   // Square cells, some 50,000 of them: what a picture shows.
@@ -127,6 +138,16 @@ MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
   };
   window.columns = cellsAlong(width);
   window.rows = cellsAlong(height);
+  return window;
+}
+
+/// The same in the coordinates of the scene's file.
+MapWindow shownWindow(MapWindow window, const Scene& scene) {
+  window.at += scene.origin[window.axis];
+  for (double* const corner : {window.low, window.high}) {
+    corner[0] += scene.origin[window.across];
+    corner[1] += scene.origin[window.up];
+  }
   return window;
 }
 
@@ -152,7 +173,7 @@ MethodMap mapOf(const PickedGamma& picked, const std::vector<float>& reference, 
   return map;
 }
 
-std::string mapCsv(const MapWindow& window, const std::vector<float>& reference,
+std::string mapCsv(const MapWindow& window, int digits, const std::vector<float>& reference,
                    const std::vector<MethodMap>& maps) {
   std::string text = "x,y,z,reference";
   for (const MethodMap& map : maps) text += "," + map.name + "," + map.name + "_error";
@@ -162,8 +183,8 @@ std::string mapCsv(const MapWindow& window, const std::vector<float>& reference,
     for (int column = 0; column < window.columns; ++column, ++k) {
       if (!std::isfinite(reference[k])) continue;  // in the solid
       const Vec3d p = window.point(column, row);
-      char cell[96];
-      std::snprintf(cell, sizeof cell, "%.7g,%.7g,%.7g,%.6f", p.x(), p.y(), p.z(),
+      char cell[128];
+      std::snprintf(cell, sizeof cell, "%.*g,%.*g,%.*g,%.6f", digits, p.x(), digits, p.y(), digits, p.z(),
                     static_cast<double>(reference[k]));
       text += cell;
       for (const MethodMap& map : maps) {
@@ -223,10 +244,11 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
     panels.push_back({"γ, " + maps.back().name, maps.back().gamma, false});
     panels.push_back({titled("error", maps.back()), maps.back().error, true});
   }
-  writeTextFile(stem + ".csv", mapCsv(window, reference, maps));
+  const MapWindow shown = shownWindow(window, scene);
+  writeTextFile(stem + ".csv", mapCsv(shown, digitsAt(scene, 7), reference, maps));
   std::cout << stem << ".csv\n";
   constexpr double kPaperScale = 0.25;  // the error of Eq. 14 at a right angle: one scale for every picture
-  plotMaps(stem + ".png", window, panels, 3, kPaperScale);
+  plotMaps(stem + ".png", window, scene.origin, panels, 3, kPaperScale);
   std::cout << stem << ".png\n";
   for (const MethodMap& map : maps)
     std::printf("%-12s largest error %.4f, mean %.5f\n", map.name.c_str(), map.largest, map.mean);

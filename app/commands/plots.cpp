@@ -16,7 +16,15 @@ namespace migiwa {
 
 namespace {
 
-constexpr std::array<const char*, 3> kAxisLabels{"x (m)", "y (m)", "z (m)"};
+/// "x (m)", or "x - 431250 (m)" where coordinates are relative to that.
+std::string axisLabel(int axis, const Vec3d& origin) {
+  std::ostringstream text;
+  text.precision(12);
+  text << "xyz"[axis];
+  if (origin[axis] != 0) text << (origin[axis] > 0 ? " - " : " + ") << std::abs(origin[axis]);
+  text << " (m)";
+  return text.str();
+}
 
 /// The pictures' own colour map, as gnuplot's palette.
 std::string sequentialPalette() {
@@ -56,16 +64,15 @@ std::string panelData(const MapWindow& window, const MapPanel& panel, int number
 
 }  // namespace
 
-void plotMaps(const std::filesystem::path& png, const MapWindow& window, const std::vector<MapPanel>& panels,
-              std::size_t perRow, double largestError) {
+void plotMaps(const std::filesystem::path& png, const MapWindow& window, const Vec3d& origin,
+              const std::vector<MapPanel>& panels, std::size_t perRow, double largestError) {
   const std::size_t columns = std::min(perRow, panels.size());
   const std::size_t rows = (panels.size() + columns - 1) / columns;
   std::ostringstream script;
   for (std::size_t k = 0; k < panels.size(); ++k) script << panelData(window, panels[k], static_cast<int>(k));
   script << "set multiplot layout " << rows << ',' << columns << '\n'
-         << "set size ratio -1\nset xlabel '" << kAxisLabels.at(static_cast<std::size_t>(window.across))
-         << "' offset 0,0.3\nset ylabel '" << kAxisLabels.at(static_cast<std::size_t>(window.up))
-         << "' offset 0.5,0\n"
+         << "set size ratio -1\nset xlabel '" << axisLabel(window.across, origin)
+         << "' offset 0,0.3\nset ylabel '" << axisLabel(window.up, origin) << "' offset 0.5,0\n"
          << "set xrange [" << window.low[0] << ':' << window.high[0] << "]\nset yrange [" << window.low[1]
          << ':' << window.high[1]
          << "]\nset xtics auto\nset tics out nomirror\nset object rectangle from graph 0,0 to graph "

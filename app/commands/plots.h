@@ -21,10 +21,11 @@ struct MapPanel {
   bool error = false;         ///< drawn about zero in two colours, else from 0 to 1
 };
 
-/// Writes the panels side by side, `perRow` in a row, with axes in metres and a colour bar each. Throws
-/// MissingError when gnuplot is not there.
-void plotMaps(const std::filesystem::path& png, const MapWindow& window, const std::vector<MapPanel>& panels,
-              std::size_t perRow, double largestError);
+/// Writes the panels side by side, `perRow` in a row, with axes in metres and a colour bar each. Axes count
+/// from `origin` (m), which the window is relative to, and say so. Throws MissingError when gnuplot is not
+/// there.
+void plotMaps(const std::filesystem::path& png, const MapWindow& window, const Vec3d& origin,
+              const std::vector<MapPanel>& panels, std::size_t perRow, double largestError);
 
 // A study's pictures: error against cost, by gnuplot.
 

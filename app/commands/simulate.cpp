@@ -117,7 +117,7 @@ class SimulateRun {
   }
 
   ParticleFrame particles() const {
-    return copyParticles(simulation_.view(), simulation_.frame(), job_.fields);
+    return copyParticles(simulation_.view(), simulation_.frame(), job_.fields, job_.scene.origin);
   }
 
   void addToExport() {

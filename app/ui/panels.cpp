@@ -157,8 +157,12 @@ void viewPanel(PanelModel& model) {
 
   rowLabel("Cut at");
   ImGui::BeginDisabled(!view.clip.enabled);
-  const double low = model.bounds.min[along(view.clip.axis)], high = model.bounds.max[along(view.clip.axis)];
-  ImGui::SliderScalar("##at", ImGuiDataType_Double, &view.clip.at, &low, &high, "%.3f m");
+  const double origin = model.scene.origin[along(view.clip.axis)];
+  const double low = origin + model.bounds.min[along(view.clip.axis)],
+               high = origin + model.bounds.max[along(view.clip.axis)];
+  double at = origin + view.clip.at;
+  if (ImGui::SliderScalar("##at", ImGuiDataType_Double, &at, &low, &high, "%.3f m"))
+    view.clip.at = at - origin;
   ImGui::EndDisabled();
 
   if (model.hasNodes) {

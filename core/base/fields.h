@@ -92,6 +92,17 @@ class BasicFieldVisitor {
     text(key, value.written, doc);
   }
   virtual void vector(std::string_view key, Value<Vec3d>& value, const FieldDoc& doc) = 0;
+  /// A position: relative to origin() here, in the file's own coordinates where it is written.
+  virtual void place(std::string_view key, Value<Vec3d>& value, const FieldDoc& doc) {
+    vector(key, value, doc);
+  }
+  /// The same for the coordinate of a position along one axis: 0 x, 1 y, 2 z.
+  virtual void coordinate(std::string_view key, Value<double>& value, int axis, const FieldDoc& doc) {
+    static_cast<void>(axis);
+    number(key, value, kCoordinateRange, doc);
+  }
+  /// What positions are relative to, in the file's own coordinates (m).
+  virtual Vec3d origin() const { return Vec3d::Zero(); }
   /// Two numbers, such as the ends of a colour range. `present`, if given, says whether the key is there.
   virtual void pair(std::string_view key, Value<std::array<double, 2>>& value, const FieldDoc& doc,
                     Value<bool>* present = nullptr) = 0;
@@ -234,22 +245,26 @@ struct Rotation {
   Eigen::Matrix3d matrix() const;
 };
 
-// Where a shape from a file stands in a scene: scaled, then turned about the origin, then moved.
+// Where a shape from a file stands in a scene: scaled, then turned about the file's origin, then moved.
 
 struct Transform {
   double scale = 1;
   Rotation rotate;
-  Vec3d translate = Vec3d::Zero();  ///< (m)
+  Vec3d translate = Vec3d::Zero();  ///< of the file's origin (m)
 
   bool operator==(const Transform& other) const;
+  /// The object "transform" beside the name of the file. Left out, the shape is where the file has it.
   template <class Visitor>
   static void describe(Visitor& visitor, Visited<Visitor, Transform>& self) {
-    visitor.number("scale", self.scale, Range::closed(1e-9, 1e6),
-                   {"1", "Factor on all lengths of the file: metres per its unit."});
-    visitor.object("rotate",
-                   {"", "Turns it about the origin; a file whose z axis is up needs [1, 0, 0] and -90."},
-                   [&](auto& fields) { Rotation::describe(fields, self.rotate); });
-    visitor.vector("translate", self.translate, {"m", "Moves it, at last."});
+    if constexpr (Visitor::kChanges) self.translate = Vec3d::Zero() - visitor.origin();
+    visitor.object("transform", {"", "Where the shape of the file stands in the scene."}, [&](auto& fields) {
+      fields.number("scale", self.scale, Range::closed(1e-9, 1e6),
+                    {"1", "Factor on all lengths of the file: metres per its unit."});
+      fields.object("rotate",
+                    {"", "Turns it about the origin; a file whose z axis is up needs [1, 0, 0] and -90."},
+                    [&](auto& turn) { Rotation::describe(turn, self.rotate); });
+      fields.place("translate", self.translate, {"m", "Moves it, at last."});
+    });
   }
   Vec3f point(const Vec3f& p) const;
   Vec3f direction(const Vec3f& n) const;

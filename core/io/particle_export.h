@@ -50,16 +50,22 @@ struct ParticleFrame {
   double time = 0;  ///< (s)
   long frame = 0;   ///< number of the frame in the run
   std::uint64_t stateHash = 0;
+  /// What positions are relative to (m): Scene::origin. Files have their sum, in double where it is not zero.
+  Vec3d origin = Vec3d::Zero();
   std::vector<FloatTriple> positions;  ///< (m)
   std::vector<ParticleField> fields;
   std::vector<std::uint32_t> ids;
 
+  /// Whether positions take more than floats.
+  bool far() const { return !origin.isZero(0); }
+  std::array<double, 3> placeOf(std::size_t particle) const;
   /// Brings the particles into the order of their ids.
   void sortById();
 };
 
-/// A copy of a simulation's view with the named fields, in the view's order.
-ParticleFrame copyParticles(const FrameView& view, long frame, std::span<const std::string> fields);
+/// A copy of a simulation's view with the named fields, in the view's order. `origin`: that of its scene.
+ParticleFrame copyParticles(const FrameView& view, long frame, std::span<const std::string> fields,
+                            const Vec3d& origin = Vec3d::Zero());
 
 // A file format for the particles of a frame. A format is one file that defines it and one line in
 // particle_formats.cpp.

@@ -12,15 +12,20 @@
 
 namespace migiwa {
 
-/// Appends the four bytes of a float or a 32-bit integer.
+/// Appends the bytes of a number of 32 or 64 bits.
 template <std::endian kOrder, class T>
 void appendBytes(std::string& text, T value) {
-  static_assert(sizeof(T) == 4);
-  auto bits = std::bit_cast<std::uint32_t>(value);
-  if constexpr (kOrder != std::endian::native) bits = __builtin_bswap32(bits);
-  char bytes[4];
-  std::memcpy(bytes, &bits, 4);
-  text.append(bytes, 4);
+  static_assert(sizeof(T) == 4 || sizeof(T) == 8);
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  if constexpr (kOrder != std::endian::native) std::reverse(bytes, bytes + sizeof(T));
+  text.append(bytes, sizeof(T));
+}
+
+std::array<double, 3> ParticleFrame::placeOf(std::size_t particle) const {
+  const auto& [x, y, z] = positions[particle];
+  return {origin.x() + static_cast<double>(x), origin.y() + static_cast<double>(y),
+          origin.z() + static_cast<double>(z)};
 }
 
 // Wavefront OBJ: a vertex for each particle, and a point element, without which some programs show nothing.
@@ -36,9 +41,13 @@ std::string objText(const ParticleFrame& frame) {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
     text.append(digits.data(), end);
   };
-  for (const FloatTriple& position : frame.positions) {
+  for (std::size_t k = 0; k < frame.positions.size(); ++k) {
     text += 'v';
-    for (const float x : position) append(x);
+    if (frame.far()) {
+      for (const double x : frame.placeOf(k)) append(x);
+    } else {
+      for (const float x : frame.positions[k]) append(x);
+    }
     text += '\n';
   }
   for (std::size_t k = 1; k <= frame.positions.size(); ++k) {
@@ -61,8 +70,9 @@ namespace {
 
 std::string header(const ParticleFrame& frame) {
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment time " + std::to_string(frame.time) +
-                     " s\nelement vertex " + std::to_string(frame.positions.size()) +
-                     "\nproperty float x\nproperty float y\nproperty float z\n";
+                     " s\nelement vertex " + std::to_string(frame.positions.size()) + "\n";
+  for (const char axis : {'x', 'y', 'z'})
+    text.append(frame.far() ? "property double " : "property float ").append(1, axis).append("\n");
   for (const ParticleField& field : frame.fields) {
     if (field.kind == ParticleField::Kind::vectors) {
       // vx, vy, vz is how readers know a velocity.
@@ -79,9 +89,13 @@ std::string header(const ParticleFrame& frame) {
 
 std::string plyText(const ParticleFrame& frame) {
   std::string text = header(frame);
-  text.reserve(text.size() + frame.positions.size() * (12 + 12 * frame.fields.size()));
+  text.reserve(text.size() + frame.positions.size() * (24 + 12 * frame.fields.size()));
   for (std::size_t k = 0; k < frame.positions.size(); ++k) {
-    for (const float x : frame.positions[k]) appendBytes<std::endian::little>(text, x);
+    if (frame.far()) {
+      for (const double x : frame.placeOf(k)) appendBytes<std::endian::little>(text, x);
+    } else {
+      for (const float x : frame.positions[k]) appendBytes<std::endian::little>(text, x);
+    }
     for (const ParticleField& field : frame.fields) {
       if (!field.vectors.empty())
         for (const float x : field.vectors[k]) appendBytes<std::endian::little>(text, x);
@@ -124,9 +138,14 @@ void appendField(std::string& text, const ParticleField& field) {
 std::string vtkText(const ParticleFrame& frame) {
   const std::string n = std::to_string(frame.positions.size());
   std::string text = "# vtk DataFile Version 3.0\nparticles at " + std::to_string(frame.time) +
-                     " s\nBINARY\nDATASET POLYDATA\nPOINTS " + n + " float\n";
-  text.reserve(text.size() + frame.positions.size() * (20 + 12 * frame.fields.size()));
-  appendTriples(text, frame.positions);
+                     " s\nBINARY\nDATASET POLYDATA\nPOINTS " + n + (frame.far() ? " double\n" : " float\n");
+  text.reserve(text.size() + frame.positions.size() * (32 + 12 * frame.fields.size()));
+  if (frame.far()) {
+    for (std::size_t k = 0; k < frame.positions.size(); ++k)
+      for (const double x : frame.placeOf(k)) appendBytes<std::endian::big>(text, x);
+  } else {
+    appendTriples(text, frame.positions);
+  }
   text += "\nVERTICES " + n + " " + std::to_string(2 * frame.positions.size()) + "\n";
   for (std::uint32_t k = 0; k < frame.positions.size(); ++k) {
     appendBytes<std::endian::big>(text, std::uint32_t{1});
@@ -200,8 +219,10 @@ std::span<const ParticleFieldInfo> particleFields() {
   return kFields;
 }
 
-ParticleFrame copyParticles(const FrameView& view, long frame, std::span<const std::string> fields) {
+ParticleFrame copyParticles(const FrameView& view, long frame, std::span<const std::string> fields,
+                            const Vec3d& origin) {
   ParticleFrame copy;
+  copy.origin = origin;
   copy.time = view.info.time;
   copy.frame = frame;
   copy.stateHash = view.info.stateHash;

@@ -183,10 +183,19 @@ SavedParts partsOf(std::string_view content, const std::string& place) {
   return parts;
 }
 
+/// What positions in the arrays are relative to. A save without this entry has those of the scene.
+Json originEntry(const Scene& scene) {
+  return Json::array({scene.origin.x(), scene.origin.y(), scene.origin.z()});
+}
+
 void requireSameScene(const Json& header, const Simulation& simulation, const std::string& place) {
   std::vector<Fault> faults;
   for (const DocumentFault& fault : identityFaults(sceneIdentity(simulation.scene()), header.at("scene")))
     faults.push_back({place + ":/scene" + fault.pointer, fault.message});
+  if (const Json expected = originEntry(simulation.scene()), found = header.value("origin", originEntry({}));
+      faults.empty() && found != expected)
+    throw InputError(place + ":/origin", "expected positions relative to " + expected.dump() + ", found " +
+                                             found.dump() + "; another version of migiwa wrote it");
   if (faults.empty()) return;
   faults.back().message += "; a save goes on only with the scene and the settings that it was made with";
   throw InputError(std::move(faults));
@@ -213,6 +222,7 @@ void writeSave(const fs::path& file, Simulation& simulation, SettledSampler& sam
   header["particles"] = simulation.view().ids.size();
   header["state_hash"] = hexDigits(simulation.stateHash());
   header["scene"] = sceneIdentity(simulation.scene());
+  if (!simulation.scene().origin.isZero(0)) header["origin"] = originEntry(simulation.scene());
   header["values"] = std::move(writer.values);
   header["arrays"] = std::move(writer.list);
   const std::string text = prettyJson(header);

@@ -73,8 +73,8 @@ void describeDomain(Visitor& visitor, Visited<Visitor, Domain>& domain) {
        "Particles that leave this box are removed and counted; left out: ten diagonals of the scene beyond "
        "its fluid and walls, and everywhere in a scene without walls."},
       [&](auto& fields) {
-        fields.vector("min", domain.min, {"m", "Corner with the smallest coordinates.", Presence::required});
-        fields.vector("max", domain.max, {"m", "Corner with the largest coordinates.", Presence::required});
+        fields.place("min", domain.min, {"m", "Corner with the smallest coordinates.", Presence::required});
+        fields.place("max", domain.max, {"m", "Corner with the largest coordinates.", Presence::required});
         if (fields.valid({"min", "max"}) && (domain.max.array() <= domain.min.array()).any())
           fields.fault("max",
                        "expected every coordinate to be larger than that of min, found one that is not");
@@ -207,8 +207,8 @@ void describeEffects(Visitor& visitor, Visited<Visitor, std::vector<NamedEffect>
 
 template <class Visitor>
 void describeCamera(Visitor& visitor, Visited<Visitor, Camera>& camera) {
-  visitor.vector("eye", camera.eye, {"m", "Where the camera is.", Presence::required});
-  visitor.vector("target", camera.target, {"m", "What it looks at.", Presence::required});
+  visitor.place("eye", camera.eye, {"m", "Where the camera is.", Presence::required});
+  visitor.place("target", camera.target, {"m", "What it looks at.", Presence::required});
   visitor.vector("up", camera.up, {"1", "The direction that is up in the picture."});
   visitor.number("fov_degrees", camera.fovDegrees, Range::closed(1, 120),
                  {"degrees", "Vertical field of view."});
@@ -231,8 +231,8 @@ void describeView(Visitor& visitor, Visited<Visitor, View>& view, bool& cameraPr
       "clip", {"", "Cuts away what lies beyond the plane towards the camera."},
       [&](auto& fields) {
         fields.choice("axis", view.clip.axis, kAxisNames, {"", "The plane's normal.", Presence::required});
-        fields.number("at", view.clip.at, kCoordinateRange,
-                      {"m", "Its place on the axis.", Presence::required});
+        fields.coordinate("at", view.clip.at, static_cast<int>(view.clip.axis),
+                          {"m", "Its place on the axis.", Presence::required});
       },
       &view.clip.enabled);
   visitor.boolean(

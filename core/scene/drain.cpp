@@ -17,14 +17,14 @@ constexpr FieldDoc kRegionDoc{"", "Of the region.", Presence::required};
 template <class Visitor>
 void Drain::fields(Visitor& visitor, Visited<Visitor, Drain>& self) {
   if (self.shape == DrainShape::box) {
-    visitor.vector("min", self.min,
-                   {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-    visitor.vector("max", self.max,
-                   {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+    visitor.place("min", self.min,
+                  {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+    visitor.place("max", self.max,
+                  {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
     visitor.object("rotation", {"", "Turns the box about its centre."},
                    [&](auto& rotation) { Rotation::describe(rotation, self.rotation); });
   } else {
-    visitor.vector("center", self.center, {"m", "Centre of the ball.", Presence::required});
+    visitor.place("center", self.center, {"m", "Centre of the ball.", Presence::required});
     visitor.number("radius", self.radius, Range::length(kLargestCoordinate),
                    {"m", "Its radius.", Presence::required});
   }

@@ -53,7 +53,7 @@ constexpr FieldDoc kMouthDoc{"", "Of its mouth.", Presence::required};
 
 template <class Visitor>
 void Emitter::fields(Visitor& visitor, Visited<Visitor, Emitter>& self) {
-  visitor.vector("center", self.center, {"m", "Of the mouth.", Presence::required});
+  visitor.place("center", self.center, {"m", "Of the mouth.", Presence::required});
   if (self.shape == MouthShape::disc) {
     visitor.number("radius", self.radius, Range::length(kLargestCoordinate),
                    {"m", "Of the mouth.", Presence::required});

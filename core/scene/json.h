@@ -160,6 +160,13 @@ Json resolveIncludes(std::string_view text, const std::filesystem::path& name, F
 /// to an array, and null takes a member out of its object.
 void applyOverrides(const std::vector<Override>& overrides, Json& root, FaultList& faults);
 
+// Where a scene is that is far from zero.
+
+/// What the positions of the scene written as `root` are relative to (Scene::origin): zero where floats hold
+/// a thousandth of a spacing, else a round number within the scene's extent on each axis. `faults` tells
+/// where its files are.
+Vec3d originOf(const Json& root, const FaultList& faults);
+
 // Where things are and how large, beside each other.
 
 /// Faults of vessels that share no room, as the scene written as `root` has them; warnings of shapes from

@@ -70,8 +70,10 @@ std::string decimalHint(const Json& found, std::string_view expected) {
 class JsonReader final : public FieldVisitor {
  public:
   /// Reads `object` (which must be one), found at `pointer`, through `fields`, then looks for unknown keys.
-  static void read(const Json& object, const std::string& pointer, FaultList& faults, const Fields& fields) {
-    JsonReader reader(object, pointer, faults);
+  /// Positions become relative to `origin`.
+  static void read(const Json& object, const std::string& pointer, const Vec3d& origin, FaultList& faults,
+                   const Fields& fields) {
+    JsonReader reader(object, pointer, origin, faults);
     fields(reader);
     reader.reportUnknownKeys();
   }
@@ -125,6 +127,18 @@ class JsonReader final : public FieldVisitor {
     numbers(key, doc, {value.data(), 3});
   }
 
+  void place(std::string_view key, Vec3d& value, const FieldDoc& doc) override {
+    if (numbers(key, doc, {value.data(), 3})) value -= origin_;
+  }
+
+  void coordinate(std::string_view key, double& value, int axis, const FieldDoc& doc) override {
+    double read = value + origin_[axis];
+    number(key, read, kCoordinateRange, doc);
+    value = read - origin_[axis];
+  }
+
+  Vec3d origin() const override { return origin_; }
+
   void pair(std::string_view key, std::array<double, 2>& value, const FieldDoc& doc, bool* present) override {
     const bool read = numbers(key, doc, value);
     if (present != nullptr) *present = read;
@@ -170,7 +184,7 @@ class JsonReader final : public FieldVisitor {
     const Json* const found = take(key, doc, "an object", std::mem_fn(&Json::is_object));
     if (found == nullptr) return;
     const std::size_t before = faults_.size();
-    read(*found, childPointer(pointer_, key), faults_, fields);
+    read(*found, childPointer(pointer_, key), origin_, faults_, fields);
     if (faults_.size() > before) faulty_.emplace(key);
   }
 
@@ -181,7 +195,7 @@ class JsonReader final : public FieldVisitor {
     for (std::size_t k = 0; k < found->size(); ++k) {
       const Json& entry = (*found)[k];
       if (entry.is_object()) {
-        read(entry, childPointer(childPointer(pointer_, key), k), faults_,
+        read(entry, childPointer(childPointer(pointer_, key), k), origin_, faults_,
              [&](FieldVisitor& fields) { element(fields, k); });
       } else {
         wrongEntry(key, k, "an object", entry);
@@ -214,8 +228,8 @@ class JsonReader final : public FieldVisitor {
   }
 
  private:
-  JsonReader(const Json& object, const std::string& pointer, FaultList& faults)
-      : object_(object), pointer_(pointer), faults_(faults) {}
+  JsonReader(const Json& object, const std::string& pointer, const Vec3d& origin, FaultList& faults)
+      : object_(object), pointer_(pointer), origin_(origin), faults_(faults) {}
 
   /// The value of a key, or null when it is absent: then a fault that says `expected`, if the key is
   /// required.
@@ -275,6 +289,7 @@ class JsonReader final : public FieldVisitor {
 
   const Json& object_;
   const std::string& pointer_;
+  const Vec3d& origin_;
   FaultList& faults_;
   std::vector<std::string_view> known_;
   std::set<std::string, std::less<>> faulty_;
@@ -304,9 +319,15 @@ void checkWhole(const Scene& scene, FaultList& faults) {
   const double coarsest = farthest * double(std::numeric_limits<float>::epsilon());
   if (coarsest > spacing / 100) {
     std::ostringstream text;
-    text << "expected at least " << 100 * coarsest << " m for fluid as far from the origin as " << farthest
-         << " m, where positions are " << coarsest << " m apart, found " << spacing
-         << " m; move the scene to the origin or use a larger spacing";
+    text << "expected at least " << 100 * coarsest << " m for fluid as far as " << farthest << " m from ";
+    if (scene.origin.isZero(0)) {
+      text << "the origin";
+    } else {
+      text << "[" << scene.origin.x() << ", " << scene.origin.y() << ", " << scene.origin.z()
+           << "], where the scene is";
+    }
+    text << ": positions there are " << coarsest << " m apart, found " << spacing
+         << " m; move the parts of the scene nearer together or use a larger spacing";
     faults.add(kSpacing, text.str());
   }
 }
@@ -327,7 +348,9 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
   applyOverrides(overrides, root, faults);
   Scene scene;
   scene.file = name;
-  JsonReader::read(root, "", faults, [&](FieldVisitor& fields) { describeScene(fields, scene); });
+  scene.origin = originOf(root, faults);
+  JsonReader::read(root, "", scene.origin, faults,
+                   [&](FieldVisitor& fields) { describeScene(fields, scene); });
   named = faults.files();
   checkWhole(scene, faults);
   if (faults.empty()) checkPlaces(scene, root, faults);

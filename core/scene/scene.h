@@ -73,7 +73,10 @@ struct Scene {
   std::string description;
   double duration = 4;            ///< (unit: s)
   double particleSpacing = 0.05;  ///< (unit: m)
-  Vec3d gravity{0, -9.81, 0};     ///< (unit: m/s^2)
+  /// What all positions here are relative to, in the coordinates of the file: zero but in a scene so far from
+  /// zero that floats would miss parts of a spacing (unit: m).
+  Vec3d origin = Vec3d::Zero();
+  Vec3d gravity{0, -9.81, 0};  ///< (unit: m/s^2)
   std::vector<std::shared_ptr<const FluidSource>> fluid;
   std::vector<Emitter> emitters;
   std::vector<Drain> drains;

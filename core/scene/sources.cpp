@@ -46,10 +46,10 @@ BoxSource::BoxSource(const Vec3d& min, const Vec3d& max, const Rotation& rotatio
 
 template <class Visitor>
 void BoxSource::fields(Visitor& visitor, Visited<Visitor, BoxSource>& self) {
-  visitor.vector("min", self.min_,
-                 {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", self.max_,
-                 {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+  visitor.place("min", self.min_,
+                {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+  visitor.place("max", self.max_,
+                {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
                  [&](auto& rotation) { Rotation::describe(rotation, self.rotation_); });
 }
@@ -108,7 +108,7 @@ Bounds BoxSource::bounds() const {
 
 template <class Visitor>
 void SphereSource::fields(Visitor& visitor, Visited<Visitor, SphereSource>& self) {
-  visitor.vector("center", self.center_, {"m", "Centre of the ball.", Presence::required});
+  visitor.place("center", self.center_, {"m", "Centre of the ball.", Presence::required});
   visitor.number("radius", self.radius_, Range::length(kLargestCoordinate),
                  {"m", "Its radius.", Presence::required});
 }
@@ -157,8 +157,7 @@ template <class Visitor>
 void MeshSource::fields(Visitor& visitor, Visited<Visitor, MeshSource>& self) {
   visitor.file("file", self.file_,
                {"", "OBJ, PLY, STL, ...: a closed mesh. Relative to the scene file.", Presence::required});
-  visitor.object("transform", {"", "Where the shape of the file stands in the scene."},
-                 [&](auto& transform) { Transform::describe(transform, self.transform_); });
+  Transform::describe(visitor, self.transform_);
 }
 
 void MeshSource::describe(FieldWriter& visitor) const {

@@ -9,15 +9,31 @@ namespace migiwa {
 
 namespace {
 
+/// The coordinate that is read as `relative` to `origin`: of those that are, one with few digits. That is the
+/// one that was written, but for digits that were lost in the difference.
+double absolute(double relative, double origin) {
+  if (origin == 0) return relative;
+  const double sum = relative + origin;
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::array<char, 32> text{};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), sum, std::chars_format::general, digits);
+    double rounded = sum;
+    std::from_chars(text.data(), end.ptr, rounded);
+    if (rounded - origin == relative) return rounded;
+  }
+  return sum;
+}
+
 /// Writes what structs visit into a JSON object: every key, with the value in force. An empty text is left
-/// out, it says nothing.
+/// out, it says nothing. Positions are relative to `origin`, and written as they are in the file.
 class JsonWriter final : public FieldWriter {
  public:
   /// What stands for a file that a scene names.
   using FileEntry = std::function<Json(const FileName&)>;
 
-  static Json write(const Fields& fields, const FileEntry& fileEntry) {
-    JsonWriter writer(fileEntry);
+  static Json write(const Fields& fields, const Vec3d& origin, const FileEntry& fileEntry) {
+    JsonWriter writer(origin, fileEntry);
     fields(writer);
     return std::move(writer.object_);
   }
@@ -38,6 +54,16 @@ class JsonWriter final : public FieldWriter {
   void vector(std::string_view key, const Vec3d& value, const FieldDoc&) override {
     put(key, Json::array({value.x(), value.y(), value.z()}));
   }
+  void place(std::string_view key, const Vec3d& value, const FieldDoc& doc) override {
+    vector(key,
+           {absolute(value.x(), origin_.x()), absolute(value.y(), origin_.y()),
+            absolute(value.z(), origin_.z())},
+           doc);
+  }
+  void coordinate(std::string_view key, const double& value, int axis, const FieldDoc&) override {
+    put(key, absolute(value, origin_[axis]));
+  }
+  Vec3d origin() const override { return origin_; }
   void triples(std::string_view key, const std::vector<std::array<double, 3>>& values,
                const FieldDoc&) override {
     put(key, values);
@@ -51,12 +77,12 @@ class JsonWriter final : public FieldWriter {
     put(key, names[static_cast<std::size_t>(index)]);
   }
   void object(std::string_view key, const FieldDoc&, const Fields& fields, const bool* present) override {
-    if (present == nullptr || *present) put(key, write(fields, fileEntry_));
+    if (present == nullptr || *present) put(key, write(fields, origin_, fileEntry_));
   }
   void list(std::string_view key, std::size_t size, const FieldDoc&, const Element& element) override {
     Json entries = Json::array();
     for (std::size_t k = 0; k < size; ++k)
-      entries.push_back(write([&](FieldWriter& fields) { element(fields, k); }, fileEntry_));
+      entries.push_back(write([&](FieldWriter& fields) { element(fields, k); }, origin_, fileEntry_));
     put(key, std::move(entries));
   }
   void variant(std::string_view key, const int& index, std::span<const std::string_view> names,
@@ -66,16 +92,18 @@ class JsonWriter final : public FieldWriter {
   }
 
  private:
-  explicit JsonWriter(const FileEntry& fileEntry) : fileEntry_(fileEntry) {}
+  JsonWriter(const Vec3d& origin, const FileEntry& fileEntry) : origin_(origin), fileEntry_(fileEntry) {}
 
   void put(std::string_view key, Json value) { object_[key] = std::move(value); }
 
   Json object_ = Json::object();
+  const Vec3d& origin_;
   const FileEntry& fileEntry_;
 };
 
 Json written(const Scene& scene, const JsonWriter::FileEntry& fileEntry) {
-  return JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); }, fileEntry);
+  return JsonWriter::write([&](FieldWriter& fields) { describeScene(fields, scene); }, scene.origin,
+                           fileEntry);
 }
 
 Json normalised(const Scene& scene) {

@@ -123,10 +123,13 @@ void Simulation::State::refuseNotFinite() {
 
 /// The same where walls leave no room: they go back, too.
 void Simulation::State::refuseOverConstrained(const OverConstrained& overConstrained, double start) {
+  const Vec3d place = scene.origin + overConstrained.place.cast<double>();
+  std::ostringstream where;
+  if (!scene.origin.isZero(0)) where.precision(10);
+  where << "(" << place.x() << ", " << place.y() << ", " << place.z() << ") m";
   std::ostringstream detail;
   detail << "walls leave the fluid less room than it needs: however long it is solved for, its density stays "
-         << 1 + overConstrained.largest << " of that at rest at (" << overConstrained.place.x() << ", "
-         << overConstrained.place.y() << ", " << overConstrained.place.z() << ") m, and "
+         << 1 + overConstrained.largest << " of that at rest at " << where.str() << ", and "
          << 1 + overConstrained.mean << " in the mean of all, after " << start
          << " s; the step was not taken. Let the fluid out, stop the moving wall earlier, or start "
          << "or emit less fluid";

@@ -355,4 +355,16 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
   return true;
 }
 
+Vec3d middleIfFar(const fs::path& file) {
+  const std::string ending = endingOf(file);
+  if (ending != "ply" && ending != "stl" && ending != "obj") return Vec3d::Zero();
+  try {
+    std::string content = contentOf(file);
+    if (ending == "ply" && !plyFault(content).empty()) return Vec3d::Zero();
+    return moveToOrigin(content, ending);
+  } catch (const InputError&) {
+    return Vec3d::Zero();  // said where the shape is read
+  }
+}
+
 }  // namespace migiwa

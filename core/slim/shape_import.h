@@ -77,6 +77,9 @@ std::size_t orientNormals(std::vector<OrientedPoint>& points);
 /// content there. Zero elsewhere, for files that hold floats only, and for those whose numbers are none.
 Vec3d moveToOrigin(std::string& content, std::string_view ending);
 
+/// The same for a file, which stays as it is; zero for one that cannot be read, too.
+Vec3d middleIfFar(const std::filesystem::path& file);
+
 // Points as text, a line each: x y z, or x y z nx ny nz.
 
 struct XyzPoints {

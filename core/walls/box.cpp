@@ -21,10 +21,10 @@ template <class Visitor>
 void Box::fields(Visitor& visitor, Visited<Visitor, Box>& self) {
   visitor.choice("fluid", self.fluid_, kFluidNames,
                  {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("min", self.min_,
-                 {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
-  visitor.vector("max", self.max_,
-                 {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
+  visitor.place("min", self.min_,
+                {"m", "Corner with the smallest coordinates, before the rotation.", Presence::required});
+  visitor.place("max", self.max_,
+                {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
   visitor.object("rotation", {"", "Turns the box about its centre."},
                  [&](auto& rotation) { Rotation::describe(rotation, self.rotation_); });
 }

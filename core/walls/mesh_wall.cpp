@@ -156,8 +156,7 @@ void MeshSurface::fields(Visitor& visitor, Visited<Visitor, MeshSurface>& self) 
                 "OBJ, PLY, STL, ...: triangles, taken as they are, or points, which are fitted as slim does. "
                 "Relative to the scene file.",
                 Presence::required});
-  visitor.object("transform", {"", "Where the shape of the file stands in the scene."},
-                 [&](auto& transform) { Transform::describe(transform, self.transform_); });
+  Transform::describe(visitor, self.transform_);
 }
 
 void MeshSurface::describe(FieldWriter& visitor) const {

@@ -41,8 +41,8 @@ void fieldsOf(Visitor& visitor, Visited<Visitor, Motion>& motion) {
       "rotation", {"", "The axis of every turn, and a constant turn about it."},
       [&](auto& fields) {
         fields.vector("axis", motion.axis, {"1", "Any length but zero.", Presence::required});
-        fields.vector("point", motion.point,
-                      {"m", "A point of the axis; it moves along with the wall.", Presence::required});
+        fields.place("point", motion.point,
+                     {"m", "A point of the axis; it moves along with the wall.", Presence::required});
         fields.number("degrees_per_second", motion.degreesPerSecond, kAngleRange,
                       {"degrees/s", "Constant turn, right-handed."});
         if constexpr (Visitor::kChanges) {

@@ -18,7 +18,7 @@ Plane::Plane(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(n
 
 template <class Visitor>
 void Plane::fields(Visitor& visitor, Visited<Visitor, Plane>& self) {
-  visitor.vector("point", self.point_, {"m", "A point of the wall.", Presence::required});
+  visitor.place("point", self.point_, {"m", "A point of the wall.", Presence::required});
   visitor.vector("normal", self.normal_,
                  {"1", "Points into the fluid; any length but zero.", Presence::required});
 }
@@ -93,7 +93,7 @@ template <class Visitor>
 void Sphere::fields(Visitor& visitor, Visited<Visitor, Sphere>& self) {
   visitor.choice("fluid", self.fluid_, kFluidNames,
                  {"", "The side of the wall that holds the fluid.", Presence::required});
-  visitor.vector("center", self.centerExact_, {"m", "Centre.", Presence::required});
+  visitor.place("center", self.centerExact_, {"m", "Centre.", Presence::required});
   visitor.number("radius", self.radiusExact_, Range::length(kLargestCoordinate),
                  {"m", "Radius.", Presence::required});
 }

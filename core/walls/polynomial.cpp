@@ -79,8 +79,8 @@ Polynomial::Polynomial(const Vec3d& origin, const Vec3d& normal, const Vec3d& xA
 
 template <class Visitor>
 void Polynomial::fields(Visitor& visitor, Visited<Visitor, Polynomial>& self) {
-  visitor.vector("origin", self.origin_,
-                 {"m", "Centre of the ball in which the wall exists.", Presence::required});
+  visitor.place("origin", self.origin_,
+                {"m", "Centre of the ball in which the wall exists.", Presence::required});
   visitor.vector("normal", self.normal_,
                  {"1", "The frame's z axis, into the fluid; any length but zero.", Presence::required});
   visitor.vector("x_axis", self.xAxis_,

@@ -22,11 +22,19 @@ constexpr std::size_t kJudgedBowlPoints = 100000;
 /// Fits that are kept.
 constexpr std::size_t kMostKept = 4;
 
-/// Many points on a bowl, in its place.
+/// Many points on a bowl, in its place. One whose centre is so far from zero that floats miss its thickness
+/// is moved by `transform` before its points are made.
 OrientedPoints placedBowl(const SlimSource& source, std::size_t count) {
-  OrientedPoints points = bowlPoints(source.bowl, count);
+  constexpr double kFar = 1000;
+  Bowl bowl = source.bowl;
+  Transform transform = source.transform;
+  if (bowl.center.norm() > kFar * (bowl.radius + bowl.height)) {
+    bowl.center += transform.rotate.matrix().transpose() * transform.translate / transform.scale;
+    transform.translate.setZero();
+  }
+  OrientedPoints points = bowlPoints(bowl, count);
   for (OrientedPoint& point : points.points)
-    point = {source.transform.point(point.position), source.transform.direction(point.normal)};
+    point = {transform.point(point.position), transform.direction(point.normal)};
   return points;
 }
 

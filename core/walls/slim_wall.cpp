@@ -81,7 +81,7 @@ void SlimSurface::fields(Visitor& visitor, Visited<Visitor, SlimSurface>& self,
        "glass."},
       [&](auto& inner) { describeBowl(inner, self.source_.bowl); }, &bowl);
   describeFit(visitor, self.source_);
-  describeTransform(visitor, self);
+  Transform::describe(visitor, self.source_.transform);
 }
 
 void SlimSurface::describe(FieldWriter& visitor) const {

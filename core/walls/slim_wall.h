@@ -101,11 +101,6 @@ class SlimSurface : public Surface {
     visitor.choice("fluid", self.fluid_, kFluidNames,
                    {"", "The side of the wall that holds the fluid.", Presence::required});
   }
-  template <class Visitor>
-  static void describeTransform(Visitor& visitor, Visited<Visitor, SlimSurface>& self) {
-    visitor.object("transform", {"", "Where the shape of the file stands in the scene."},
-                   [&](auto& transform) { Transform::describe(transform, self.source_.transform); });
-  }
   /// Takes `file` for what the surface is made of.
   void setFile(SlimSource::Kind kind, const FileName& file);
   /// Prepares `source_`; faults are reported at `key`.

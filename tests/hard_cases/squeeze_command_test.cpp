@@ -41,6 +41,30 @@ TEST_F(SqueezeCommand, EndsWithExitCode3NamesTheTroubleAndKeepsTheLastGoodState)
   EXPECT_EQ(report()["state_hash"], stopped["state_hash"]);
 }
 
+TEST_F(SqueezeCommand, NamesThePlaceAsTheSceneHasIt) {
+  const auto placeFor = [&](const std::vector<std::string>& overrides) {
+    EXPECT_EQ(run(simulate(overrides)).code, 3);
+    const Json stopped = report();
+    for (const Json& trouble : stopped["trouble"]) {
+      if (trouble["kind"] != "squeezed") continue;
+      const auto detail = trouble["detail"].get<std::string>();
+      return std::stod(detail.substr(detail.find(" at (") + 5));
+    }
+    return 0.0;
+  };
+  const double near = placeFor({});
+  const double far = placeFor(
+      {"--set", "/fluid/0/min=[431250,0,0]", "--set", "/fluid/0/max=[431250.4,0.4,0.4]", "--set",
+       "/boundary/surfaces/0/min=[431250,0,0]", "--set", "/boundary/surfaces/0/max=[431250.4,0.8,0.4]",
+       "--set", "/boundary/surfaces/1/min=[431249.9,0.5,-0.1]", "--set",
+       "/boundary/surfaces/1/max=[431250.5,1,0.5]"});
+  EXPECT_GT(near, 0);
+  EXPECT_LT(near, 0.4);
+  // Where exactly depends on the last digits of the scene's coordinates.
+  EXPECT_NEAR(far - 431250, near, 0.4);
+  EXPECT_NE(far, 431250);
+}
+
 TEST_F(SqueezeCommand, ExportsTheLastGoodFrameAndSaysTroubleOnce) {
   const Outcome outcome = run(simulate({"--export", "frames", "--every", "10"}));
   EXPECT_EQ(outcome.code, 3);

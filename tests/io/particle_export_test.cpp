@@ -149,6 +149,45 @@ TEST_F(ParticleFiles, ObjDigitsAreTheNumberItself) {
   EXPECT_EQ(points, place_.size());
 }
 
+template <class Number>
+Number numberAt(const std::string& text, std::size_t at, std::endian order) {
+  std::array<char, sizeof(Number)> bytes{};
+  text.copy(bytes.data(), bytes.size(), at);
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<Number>(bytes);
+}
+
+// A float at 431 km tells 3 cm apart.
+TEST_F(ParticleFiles, PositionsFarFromZeroAreInDouble) {
+  const Vec3d origin(431250, 0, -8700);
+  for (const char* format : {"ply", "vtk", "obj"}) {
+    ParticleExport exporter(options(format, {}), 0);
+    exporter.add(copyParticles(simulation_.view(), simulation_.frame(), {}, origin));
+    exporter.finish();
+  }
+  const std::string ply = contentOf(folder_ / "drop_000000.ply"),
+                    vtk = contentOf(folder_ / "drop_000000.vtk"),
+                    obj = contentOf(folder_ / "drop_000000.obj");
+  EXPECT_NE(ply.find("\nproperty double x\nproperty double y\nproperty double z\nend_header\n"), ply.npos);
+  const std::string points = "\nPOINTS " + std::to_string(place_.size()) + " double\n";
+  ASSERT_NE(vtk.find(points), vtk.npos);
+  std::size_t inPly = ply.find("end_header\n") + 11, inVtk = vtk.find(points) + points.size();
+  EXPECT_EQ(ply.size(), inPly + place_.size() * 24);
+  std::istringstream words(obj.substr(obj.find("\nv ")));
+  for (std::size_t id = 0; id < place_.size(); ++id) {
+    const Vec3d p = origin + simulation_.view().positions[place_[id]].xyz().cast<double>();
+    std::string word;
+    words >> word;
+    ASSERT_EQ(word, "v");
+    for (int axis = 0; axis < 3; ++axis, inPly += 8, inVtk += 8) {
+      ASSERT_EQ(numberAt<double>(ply, inPly, std::endian::little), p[axis]);
+      ASSERT_EQ(numberAt<double>(vtk, inVtk, std::endian::big), p[axis]);
+      words >> word;
+      ASSERT_EQ(std::strtod(word.c_str(), nullptr), p[axis]);
+    }
+  }
+}
+
 TEST_F(ParticleFiles, IdsWithGapsAreSortedToo) {
   ParticleFrame sparse;
   sparse.ids = {70, 5, 4'000'000'000, 6};

@@ -391,6 +391,18 @@ TEST_F(SaveFile, NamesThatOnlyOneSideKnowsAreRefused) {
       << faultsFor(scene);
 }
 
+TEST_F(SaveFile, SaysWhatPositionsAreRelativeTo) {
+  Scene far = smallDamBreak();
+  far.origin = {431250, 0, -8700};
+  saveAfter(far, 3);
+  EXPECT_EQ(faultsFor(far), "");
+  changeHeader([](Json& header) { header.erase("origin"); });
+  EXPECT_NE(faultsFor(far).find(
+                ":/origin: expected positions relative to [431250.0,0.0,-8700.0], found [0.0,0.0,0.0]"),
+            std::string::npos)
+      << faultsFor(far);
+}
+
 TEST_F(SaveFile, ContradictionsAreFound) {
   const Scene scene = smallDamBreak();
   const auto changed = [&](const std::function<void(Json&)>& change) {

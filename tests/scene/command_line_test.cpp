@@ -142,6 +142,28 @@ TEST_F(CommandLine, AReferenceForGammaIsForThatCommandAlone) {
       0);
 }
 
+// Points go in and come out as the scene has them, also where a float tells 3 cm apart.
+TEST_F(CommandLine, GammaFarFromZeroIsThatAtZero) {
+  const auto scene = [](const std::string& x) {
+    return R"({ "format": 1, "particle_spacing": 0.05, "boundary": { "surfaces": [
+        { "shape": "sphere", "fluid": "inside", "radius": 0.5, "center": [)" +
+           x + "0.5, 0.5, 0.5] } ] } }";
+  };
+  std::ofstream(folder_ / "near.json") << scene("");
+  std::ofstream(folder_ / "far.json") << scene("43125");
+  std::ofstream(folder_ / "near.csv") << "x,y,z\n0.0625,0.5,0.5\n0.5078125,0.015625,0.5\n";
+  std::ofstream(folder_ / "far.csv") << "x,y,z\n431250.0625,0.5,0.5\n431250.5078125,0.015625,0.5\n";
+  for (const std::string name : {"near", "far"}) {
+    const Outcome outcome = run({"gamma", name + ".json", "--points", name + ".csv", "--out",
+                                 name + "_out.csv", "--set", "/boundary/gamma/method=directions"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  std::string expected = readAll(folder_ / "near_out.csv");
+  for (const std::string x : {"0.0625,", "0.5078125,"})
+    expected.replace(expected.find('\n' + x), x.size() + 1, "\n43125" + x);
+  EXPECT_EQ(readAll(folder_ / "far_out.csv"), expected);
+}
+
 TEST_F(CommandLine, CheckListsTheFaultsOfAllFiles) {
   const Outcome outcome = run({"check", kBad + "broken_nan.json", kScenes + "dam_break.json", "missing.json",
                                kBad + "wrong_types.json"});
