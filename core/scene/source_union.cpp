@@ -50,7 +50,8 @@ double wholeCells(double length, double spacing) {
 SourceUnion::SourceUnion(std::vector<std::shared_ptr<const FluidSource>> sources, double spacing)
     : sources_(std::move(sources)), spacing_(spacing) {
   for (const auto& source : sources_) {
-    blocks_.push_back(source->block());
+    // What is not trimmed to others does not go by their lattices either.
+    blocks_.push_back(source->trim ? source->block() : Bounds{});
     starts_.push_back(blocks_.back().empty() ? Vec3d(Vec3d::Zero()) : blocks_.back().min);
   }
   std::vector<std::size_t> order;

@@ -64,7 +64,7 @@ TEST(ArtificialPressure, APairAtDeltaQPartsAsFarAsEquation13Says) {
   scene.solver.acceleration = Acceleration::none;
   const double gap = 0.2 * 2 * kSpacing;
   addFluid(scene, {0, 0, 0}, {kSpacing, kSpacing, kSpacing});
-  addFluid(scene, {gap, 0, 0}, {gap + kSpacing, kSpacing, kSpacing});
+  addFluid(scene, {gap, 0, 0}, {gap + kSpacing, kSpacing, kSpacing}, Vec3d::Zero(), false);
   scene.effects = effectsOf(R"({"artificial_pressure": {"k": 0.1, "n": 4, "delta_q": 0.2}})");
   Simulation simulation(scene, 1);
   simulation.advanceFrame();
