@@ -149,7 +149,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3f& p) const {
     for (std::uint32_t k = branch.begin; k < branch.end; ++k) {
       const Foot candidate = footOn(triangles_[k].corners, p);
       const float squared = (candidate.place - p).squaredNorm();
-      if (squared >= least) continue;
+      if (!(squared < least)) continue;
       least = squared;
       foot = candidate;
       index = k;

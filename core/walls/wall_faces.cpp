@@ -342,6 +342,9 @@ class FaceSplitter {
                             normal,
                             side == Side::sheet,
                             k};
+      // What rounding to float leaves no width of cannot be told from its border.
+      const Vec3f along = triangle.corners[1] - triangle.corners[0];
+      if (along.cross(triangle.corners[2] - triangle.corners[0]).isZero(0)) continue;
       if (turned) std::swap(triangle.corners[1], triangle.corners[2]);
       result_.push_back(triangle);
     }
