@@ -118,9 +118,9 @@ struct StepState : FluidState, StepBuffers, StepRecord {
 
   ThreadPool& pool;
   const Boundary& boundary;
-  WallIndex thinWalls;       ///< thinner than the support radius
-  WallIndex collisionWalls;  ///< of continuous collision: thin walls, and those that move
-  const GammaMethod* gammaMethod = nullptr;    ///< null: no correction
+  WallIndex thinWalls;                       ///< thinner than the support radius
+  WallIndex collisionWalls;                  ///< of continuous collision: thin walls, and those that move
+  const GammaMethod* gammaMethod = nullptr;  ///< null: no correction
   SolverParameters parameters;
   bool guards = true;             ///< see Guards
   Vec3f gravity = Vec3f::Zero();  ///< (m/s^2)

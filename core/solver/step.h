@@ -113,8 +113,7 @@ WallIndex collisionWalls(const Boundary& boundary, float supportRadius);
 /// Where a move ends that thin walls bar: `margin` (m) before the wall that it meets, where it would have
 /// gone along the wall. A move that starts inside of a wall is left as it is. `from` is a place of the start
 /// of the step if `stepBegan`: what counts is the way relative to the wall, which has moved since.
-Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to,
-               float margin);
+Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to, float margin);
 
 // Energy that a step made from nothing. A projection onto a convex set that holds the start never lengthens
 // the way, so that undoing density errors takes kinetic energy. The density is not convex in the positions,
