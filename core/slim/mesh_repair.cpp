@@ -56,22 +56,16 @@ void weldNear(TriangleMesh& mesh, std::vector<std::string>& notes) {
   const double reach = kWelded * mesh.bounds().size().norm();
   if (!(reach > 0)) return;
   const NearPoints near(mesh.vertices, reach);
-  std::vector<std::uint32_t> first(mesh.vertices.size());
-  for (std::uint32_t k = 0; k < first.size(); ++k) first[k] = k;
-  const auto root = [&](std::uint32_t k) {
-    while (first[k] != k) k = first[k] = first[first[k]];
-    return k;
-  };
+  DisjointSets same(mesh.vertices.size());
   std::size_t welded = 0;
-  for (std::uint32_t k = 0; k < first.size(); ++k)
+  for (std::uint32_t k = 0; k < mesh.vertices.size(); ++k)
     near.within(mesh.vertices[k], [&](std::uint32_t other) {
-      const std::uint32_t a = root(k), b = root(other);
-      if (a != b) first[std::max(a, b)] = std::min(a, b), ++welded;
+      if (same.join(k, other)) ++welded;
       return true;
     });
   if (welded == 0) return;
   for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle) corner = root(corner);
+    for (std::uint32_t& corner : triangle) corner = same.least(corner);
   std::ostringstream text;
   text.precision(2);
   text << counted(welded, "corner was", "corners were") << " welded to others within " << reach

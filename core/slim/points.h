@@ -1,6 +1,7 @@
 // Meshes and oriented points: what SLIM surfaces are fitted to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -174,6 +175,29 @@ class RandomSequence {
 
  private:
   std::uint64_t state_;
+};
+
+// Which of numbered things hang together.
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parents_(count) {
+    for (std::uint32_t k = 0; k < count; ++k) parents_[k] = k;
+  }
+  /// The least of those that hang together with k.
+  std::uint32_t least(std::uint32_t k) {
+    while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
+    return k;
+  }
+  /// Whether the two did not hang together before.
+  bool join(std::uint32_t one, std::uint32_t other) {
+    const std::uint32_t a = least(one), b = least(other);
+    parents_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
 };
 
 // Triangles over shared vertices.

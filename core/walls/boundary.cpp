@@ -36,8 +36,8 @@ std::vector<const Surface*> Boundary::pointers() const {
 }
 
 bool Boundary::standsSteadily() const {
-  return moving_.empty() && std::all_of(surfaces_.begin(), surfaces_.end(),
-                                        [](const auto& surface) { return surface->steadyDistance(); });
+  return std::all_of(surfaces_.begin(), surfaces_.end(),
+                     [](const auto& surface) { return surface->steadyDistance(); });
 }
 
 Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) {
@@ -185,6 +185,23 @@ std::vector<std::shared_ptr<const Surface>> wallsFor(
     walls.push_back(wall != nullptr ? std::move(wall) : surface);
   }
   return walls;
+}
+
+bool projectAlongNormals(const Surface& surface, Vec3f& p, float margin) {
+  constexpr int kRounds = 8;
+  bool moved = false;
+  Vec3f before = p;
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3f normal;
+    const float missing = margin - surface.distance(p, normal);
+    if (missing <= 1e-4F * margin) return moved;
+    before = p;
+    p += missing * normal;
+    moved = true;
+  }
+  // To and fro between two parts of the wall: midway.
+  p = 0.5F * (before + p);
+  return true;
 }
 
 void Surface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {

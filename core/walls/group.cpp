@@ -19,10 +19,10 @@ std::unique_ptr<Surface> makeVessel(int vessel) {
   return makeSurface(static_cast<int>(shape - shapes.begin()));
 }
 
-/// Whether the fluid is on the inside of a closed mesh that `vessel` encloses.
-bool holdsFluid(const Surface& vessel, const TriangleMesh& mesh) {
+/// Whether the fluid is on the inside of a mesh that `vessel` encloses, from its triangle `face` on.
+bool holdsFluid(const Surface& vessel, const TriangleMesh& mesh, std::size_t face) {
   // From the middle of a face a little inwards.
-  const auto& [a, b, c] = mesh.triangles.front();
+  const auto& [a, b, c] = mesh.triangles[face];
   const Vec3f &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
   const Vec3f across = (q - p).cross(r - p);
   Vec3f ignored;
@@ -52,18 +52,14 @@ void GroupSurface::unite(FieldVisitor& visitor) {
   const Activity activity("joining vessels");
   TriangleMesh all;
   for (std::size_t k = 0; k < vessels_.size(); ++k) {
-    TriangleMesh own;
+    const std::size_t first = all.triangles.size();
     const std::string vessel = "surfaces/" + std::to_string(k);
-    if (vessels_[k]->bounds().empty() || !vessels_[k]->enclosed(own)) {
+    if (vessels_[k]->bounds().empty() || !vessels_[k]->enclosed(all)) {
       visitor.fault(vessel, "expected a closed vessel, found one that encloses nothing");
-      continue;
-    }
-    if (!holdsFluid(*vessels_[k], own))
+    } else if (!holdsFluid(*vessels_[k], all, first)) {
       visitor.fault(vessel,
                     "expected \"fluid\": \"inside\", for a group is a union of vessels, found \"outside\"");
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), own.vertices.begin(), own.vertices.end());
-    for (const auto& [a, b, c] : own.triangles) all.triangles.push_back({first + a, first + b, first + c});
+    }
   }
   if (all.triangles.empty()) {
     visitor.fault("surfaces", "expected at least one vessel, found none");

@@ -178,14 +178,10 @@ void MeshSurface::prepare(FieldVisitor& visitor) {
     } else if (mesh.tree != nullptr) {
       shape_ = std::make_shared<const TriangleWall>(mesh.tree, inside);
     } else {
-      SlimSource source;
-      source.file = file_.path;
-      source.identity = file_.identity;
-      source.transform = transform_;
-      const std::shared_ptr<const SlimWallData> data = prepareSlim(source);
-      notes = data->notes;
-      shape_ = std::make_shared<const SlimSurface>(
-          data, inside ? SlimSurface::Fluid::inside : SlimSurface::Fluid::outside);
+      auto fitted = std::make_shared<const SlimSurface>(
+          file_, transform_, inside ? SlimSurface::Fluid::inside : SlimSurface::Fluid::outside);
+      notes = fitted->notes();
+      shape_ = std::move(fitted);
     }
     for (const std::string& note : notes) visitor.warning("file", file_.path.string() + ": " + note);
   } catch (const InputError& error) {

@@ -30,6 +30,8 @@ class MovingSurface final : public Surface {
   void describe(FieldWriter& visitor) const override { rest_->describe(visitor); }
   Vec3f velocity(const Vec3f& p) const override;
   Vec3f carried(const Vec3f& p) const override;
+  /// It goes elsewhere by itself.
+  bool steadyDistance() const override { return false; }
   float distance(const Vec3f& p, Vec3f& normal) const override;
   bool project(Vec3f& p, float margin) const override;
   void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override;

@@ -112,6 +112,13 @@ void SlimSurface::describe(FieldVisitor& visitor) {
   }
 }
 
+SlimSurface::SlimSurface(const FileName& mesh, const Transform& transform, Fluid fluid)
+    : fluid_(fluid), meshFile_(mesh) {
+  source_.transform = transform;
+  setFile(SlimSource::Kind::mesh, mesh);
+  data_ = prepareSlim(source_);
+}
+
 void SlimSurface::setFile(SlimSource::Kind kind, const FileName& file) {
   source_.kind = kind;
   source_.file = file.path;
@@ -138,20 +145,7 @@ float SlimSurface::distance(const Vec3f& p, Vec3f& normal) const {
 bool SlimSurface::project(Vec3f& p, float margin) const {
   const float coarse = data_->model->coarseDistance(p) * (holdsFluid() ? -1.0F : 1.0F);
   if (coarse - data_->model->coarseError() > margin) return false;
-  constexpr int kRounds = 8;
-  bool moved = false;
-  Vec3f before = p;
-  for (int round = 0; round < kRounds; ++round) {
-    Vec3f normal;
-    const float missing = margin - distance(p, normal);
-    if (missing <= 1e-4F * margin) return moved;
-    before = p;
-    p += missing * normal;
-    moved = true;
-  }
-  // To and fro between two parts of the wall: midway.
-  p = 0.5F * (before + p);
-  return true;
+  return projectAlongNormals(*this, p, margin);
 }
 
 void SlimSurface::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {

@@ -72,6 +72,10 @@ class SlimSurface : public Surface {
   SlimSurface() = default;
   SlimSurface(std::shared_ptr<const SlimWallData> data, Fluid fluid)
       : data_(std::move(data)), fluid_(fluid) {}
+  /// Fitted to a mesh or points, as a scene would name it. Throws InputError when the file does not allow it.
+  SlimSurface(const FileName& mesh, const Transform& transform, Fluid fluid);
+
+  const std::vector<std::string>& notes() const { return data_->notes; }
 
   void describe(FieldVisitor& visitor) override;
   void describe(FieldWriter& visitor) const override;

@@ -239,6 +239,10 @@ class Surface {
   virtual const BoxGeometry* tank() const { return nullptr; }
 };
 
+/// Moves p along the normals of a surface until it is at `margin` (m), or midway between two of its parts
+/// that leave no room. Returns whether it moved.
+bool projectAlongNormals(const Surface& surface, Vec3f& p, float margin);
+
 /// A surface that leaves to another what it does not know better.
 class StandIn : public Surface {
  public:
@@ -250,6 +254,8 @@ class StandIn : public Surface {
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override {
     shape_->firstHits(origin, directions, hits);
   }
+  bool steadyDistance() const override { return shape_->steadyDistance(); }
+  std::optional<double> fitError() const override { return shape_->fitError(); }
   bool reentrant() const override { return shape_->reentrant(); }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override {
     shape_->exits(origin, directions, exits);

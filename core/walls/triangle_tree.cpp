@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 
 #include "core/walls/triangles.h"
 
@@ -53,8 +53,7 @@ float angleAt(const WallTriangle& triangle, const Vec3f& place, float rounding) 
     const float lengths = one.norm() * other.norm();
     if (lengths <= 0) return 0;
     const auto cosine = static_cast<double>(std::clamp(one.dot(other) / lengths, -1.0F, 1.0F));
-    constexpr double kPi = 3.14159265358979323846;
-    return static_cast<float>(0.5 - portable::asin(cosine) / kPi);
+    return static_cast<float>(0.5 - portable::asin(cosine) / std::numbers::pi);
   }
   return 1;
 }

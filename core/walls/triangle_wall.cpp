@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
 
+#include "core/base/hash.h"
 #include "core/walls/mesh_wall.h"
 
 namespace migiwa {
@@ -67,12 +67,10 @@ float TriangleWall::thicknessBehind(const WallTriangle& triangle) const {
 }
 
 void TriangleWall::describe(FieldWriter& visitor) const {
-  // FNV-1a over the bits of all corners, in halves that a number holds exactly.
-  std::uint64_t sum = 0xCBF29CE484222325U;
+  // In halves that a number holds exactly.
+  std::uint64_t sum = kEmptyChecksum;
   for (const WallTriangle& triangle : tree_->triangles())
-    for (const Vec3f& corner : triangle.corners)
-      for (int axis = 0; axis < 3; ++axis)
-        sum = (sum ^ std::bit_cast<std::uint32_t>(corner[axis])) * 0x100000001B3U;
+    for (const Vec3f& corner : triangle.corners) sum = checksum(sum, corner.data(), 3 * sizeof(float));
   const double high = static_cast<double>(sum >> 32), low = static_cast<double>(sum & 0xFFFFFFFFU);
   visitor.number("corners_high", high, Range::closed(0, 0x1p32), {"1", ""});
   visitor.number("corners_low", low, Range::closed(0, 0x1p32), {"1", ""});
@@ -85,20 +83,7 @@ float TriangleWall::distance(const Vec3f& p, Vec3f& normal) const {
 }
 
 bool TriangleWall::project(Vec3f& p, float margin) const {
-  constexpr int kRounds = 8;
-  bool moved = false;
-  Vec3f before = p;
-  for (int round = 0; round < kRounds; ++round) {
-    const TriangleTree::Nearest nearest = tree_->nearest(p);
-    const float missing = margin - nearest.distance;
-    if (missing <= 1e-4F * margin) return moved;
-    before = p;
-    p += missing * nearest.normal;
-    moved = true;
-  }
-  // To and fro between two parts of the wall: midway.
-  p = 0.5F * (before + p);
-  return true;
+  return projectAlongNormals(*this, p, margin);
 }
 
 void TriangleWall::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
@@ -137,11 +122,11 @@ void TriangleWall::exits(const Vec3f& origin, const Directions& directions, std:
   for (const std::uint32_t k : inReach) {
     const WallTriangle& triangle = tree_->triangles()[k];
     const float height = heightOver(k);
-    const bool inFront = triangle.sheet || height >= -slack;
-    (!inFront   ? behind
-     : thin_[k] ? thin
-                : thick)
-        .push_back(seenFrom(origin, triangle, height < 0 && (!inFront || triangle.sheet)));
+    if (!triangle.sheet && height < -slack) {
+      behind.push_back(seenFrom(origin, triangle, true));
+    } else {
+      (thin_[k] ? thin : thick).push_back(seenFrom(origin, triangle, triangle.sheet && height < 0));
+    }
   }
   thinHits.assign(exits.size(), kInfinity);
   thickHits.assign(exits.size(), kInfinity);

@@ -33,30 +33,27 @@ struct Cut {
   Vec3d from, to;  ///< the part of that plane that it cuts
 };
 
+/// The same for both directions; the smaller corner is in the upper half.
+std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+}
+
 /// Which faces belong to parts of the mesh that have a rim: an edge that as many faces run along in one
 /// direction as in the other is none.
 std::vector<bool> openFaces(const TriangleMesh& mesh) {
-  const auto key = [](std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-  };
-  std::vector<std::uint32_t> part(mesh.vertices.size());
-  std::iota(part.begin(), part.end(), 0U);
-  const auto root = [&](std::uint32_t k) {
-    while (part[k] != k) k = part[k] = part[part[k]];
-    return k;
-  };
+  DisjointSets parts(mesh.vertices.size());
   std::unordered_map<std::uint64_t, int> balance;
   for (const auto& corners : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
-      balance[key(a, b)] += a < b ? 1 : -1;
-      part[root(a)] = root(b);
+      balance[edgeKey(a, b)] += a < b ? 1 : -1;
+      parts.join(a, b);
     }
   }
   std::vector<bool> open(mesh.vertices.size(), false), result(mesh.triangles.size());
   for (const auto& [edge, surplus] : balance)
-    if (surplus != 0) open[root(static_cast<std::uint32_t>(edge >> 32))] = true;
-  for (std::size_t k = 0; k < result.size(); ++k) result[k] = open[root(mesh.triangles[k][0])];
+    if (surplus != 0) open[parts.least(static_cast<std::uint32_t>(edge >> 32))] = true;
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = open[parts.least(mesh.triangles[k][0])];
   return result;
 }
 
@@ -297,12 +294,7 @@ class FaceSplitter {
 
   /// Faces that share an edge and that nothing else meets have the same on their sides.
   void addPlain(const std::vector<std::uint32_t>& plain) {
-    std::vector<std::uint32_t> group(faces_.size());
-    std::iota(group.begin(), group.end(), 0U);
-    const auto root = [&](std::uint32_t k) {
-      while (group[k] != k) k = group[k] = group[group[k]];
-      return k;
-    };
+    DisjointSets groups(faces_.size());
     struct Neighbours {
       int faces = 0;
       std::uint32_t first = 0, second = 0;
@@ -313,16 +305,16 @@ class FaceSplitter {
     for (std::uint32_t k = 0; k < faces_.size(); ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t a = mesh_.triangles[k][c], b = mesh_.triangles[k][(c + 1) % 3];
-        Neighbours& edge = edges[static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b)];
+        Neighbours& edge = edges[edgeKey(a, b)];
         (edge.faces++ == 0 ? edge.first : edge.second) = k;
       }
     }
     for (const auto& [key, edge] : edges)
       if (edge.faces == 2 && isPlain[edge.first] && isPlain[edge.second])
-        group[std::max(root(edge.first), root(edge.second))] = std::min(root(edge.first), root(edge.second));
+        groups.join(edge.first, edge.second);
     std::unordered_map<std::uint32_t, Side> sides;
     for (const std::uint32_t k : plain) {
-      const auto [known, isNew] = sides.try_emplace(root(k), Side::none);
+      const auto [known, isNew] = sides.try_emplace(groups.least(k), Side::none);
       if (isNew) known->second = sideOf(k, (faces_[k][0] + faces_[k][1] + faces_[k][2]) / 3);
       add(k, Polygon(faces_[k].begin(), faces_[k].end()), known->second);
     }

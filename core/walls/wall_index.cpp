@@ -17,10 +17,6 @@ constexpr double kMostCells = 2e6;
 /// How much faster than a point a distance may change: those from a grid are a little too steep in places.
 constexpr float kExactSlope = 1.001F, kGriddedSlope = 1.5F;
 
-bool staysPut(const Surface& wall) {
-  return !wall.motion && wall.steadyDistance();
-}
-
 float slopeOf(const Surface& wall) {
   return wall.exact() != nullptr ? kGriddedSlope : kExactSlope;
 }
@@ -44,8 +40,9 @@ WallIndex::WallIndex(std::vector<const Surface*> walls, float reach, bool neares
   cells_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                 static_cast<std::size_t>(size_.z()));
   fill({Eigen::Vector3i::Zero(), size_}, walls_, nearestToo);
-  std::copy_if(walls_.begin(), walls_.end(), std::back_inserter(beyond_),
-               [&](const Surface* wall) { return nearestToo || !staysPut(*wall) || wall->bounds().empty(); });
+  std::copy_if(walls_.begin(), walls_.end(), std::back_inserter(beyond_), [&](const Surface* wall) {
+    return nearestToo || !wall->steadyDistance() || wall->bounds().empty();
+  });
 }
 
 void WallIndex::fill(const Block& block, const std::vector<const Surface*>& candidates, bool nearestToo) {
@@ -56,7 +53,7 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
   std::vector<float> least;  // that a point of the block can be from each
   float most = std::numeric_limits<float>::infinity();
   for (const Surface* wall : candidates) {
-    if (!staysPut(*wall)) {
+    if (!wall->steadyDistance()) {
       least.push_back(-std::numeric_limits<float>::infinity());
       continue;
     }

@@ -16,16 +16,8 @@
 namespace migiwa::testing {
 namespace {
 
-/// By the solid angle of all triangles: 4 pi within, 0 outside.
 bool inside(const TriangleMesh& mesh, const Vec3d& at) {
-  double angle = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3d a = mesh.vertices[i].cast<double>() - at, b = mesh.vertices[j].cast<double>() - at,
-                c = mesh.vertices[k].cast<double>() - at;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return std::abs(angle) > 2 * std::numbers::pi;
+  return std::abs(windingNumber(mesh, at)) > 0.5;
 }
 
 /// Every cell of the bounding box and one more, by z, then y, then x, of the lattice with a cell at `center`.

@@ -18,17 +18,6 @@ namespace {
 
 constexpr double kSpacing = 1.0 / 32;
 
-int windingNumber(const TriangleMesh& mesh, const Vec3d& at) {
-  double angle = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3d a = mesh.vertices[i].cast<double>() - at, b = mesh.vertices[j].cast<double>() - at,
-                c = mesh.vertices[k].cast<double>() - at;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return static_cast<int>(std::lround(angle / (4 * std::numbers::pi)));
-}
-
 /// The half-spaces behind the faces of a convex mesh.
 struct Convex {
   std::vector<std::pair<Vec3d, double>> faces;
@@ -189,7 +178,7 @@ TEST(MeshUnion, CellsAreFilledWhereTheWindingNumberSays) {
       // Faces may lie on the centres: next to one, as the filling decides it, it has to be right.
       const Vec3d center = first + kSpacing * Vec3d(double(cell[0]) + 1.2345e-7, double(cell[1]) + 3.1416e-7,
                                                     double(cell[2]) + 2.7183e-7);
-      ASSERT_EQ(filled.contains(cell), windingNumber(shape.mesh, center) >= 1)
+      ASSERT_EQ(filled.contains(cell), std::lround(windingNumber(shape.mesh, center)) >= 1)
           << cell[0] << ' ' << cell[1] << ' ' << cell[2];
     }
 

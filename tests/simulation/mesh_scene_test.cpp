@@ -15,15 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ballMesh;
-using testing::boxMesh;
+using testing::blockMesh;
 using testing::together;
 using testing::tubeMesh;
 using testing::windingNumber;
-
-TriangleMesh blockMesh(const Vec3d& low, const Vec3d& high) {
-  const Vec3d size = high - low;
-  return boxMesh(low, {size.x(), 0, 0}, {0, size.y(), 0}, {0, 0, size.z()});
-}
 
 /// A cup: a disc with a wall about it, open at the top. With a thickness it is closed: two shells and a rim.
 TriangleMesh cupMesh(double radius, double height, double thickness) {

@@ -23,6 +23,12 @@ inline TriangleMesh boxMesh(const Vec3d& corner, const Vec3d& a, const Vec3d& b,
   return mesh;
 }
 
+/// One along the axes, between two corners.
+inline TriangleMesh blockMesh(const Vec3d& low, const Vec3d& high) {
+  const Vec3d size = high - low;
+  return boxMesh(low, {size.x(), 0, 0}, {0, size.y(), 0}, {0, 0, size.z()});
+}
+
 /// A square rod of the given length and width (m) from the origin along a diagonal that no axis is near.
 inline TriangleMesh slantedNeedle(double length, double width) {
   const Vec3d along = Vec3d(1, 0.9, 1.1).normalized(), a = along.unitOrthogonal(), b = along.cross(a);

@@ -2,11 +2,16 @@
 #include "core/walls/mesh_wall.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "core/gamma/baked.h"
 #include "core/gamma/gamma_method.h"
+#include "core/scene/scene_file.h"
 #include "core/walls/boundary.h"
 #include "core/walls/shapes.h"
 #include "tests/support/mesh_shapes.h"
@@ -15,6 +20,7 @@ namespace migiwa {
 namespace {
 
 using testing::ballMesh;
+using testing::blockMesh;
 using testing::boxMesh;
 using testing::sheetMesh;
 using testing::together;
@@ -25,11 +31,6 @@ using testing::windingNumber;
 TriangleWall wallOf(const TriangleMesh& mesh, bool fluidInside, float support = 0) {
   return TriangleWall(std::make_shared<const TriangleTree>(wallFaces(mesh, fluidInside, "test")), fluidInside,
                       support);
-}
-
-TriangleMesh blockMesh(const Vec3d& low, const Vec3d& high) {
-  const Vec3d size = high - low;
-  return boxMesh(low, {size.x(), 0, 0}, {0, size.y(), 0}, {0, 0, size.z()});
 }
 
 /// Box, ball or tube, anywhere and any way round in a cube of edge 2; one in three along the axes, with
@@ -303,8 +304,36 @@ TEST(GammaOfMeshes, AtRightAngledEdgesIsWithinAHundredthOfThatOfPlanes) {
     for (std::size_t i = 0; i < points.size(); ++i)
       worst = std::max(worst, std::abs(found[i].gamma - expected[i].gamma));
     EXPECT_LT(worst, 0.01F) << name;
-    std::printf("%s: %.4f\n", name, static_cast<double>(worst));
   }
+}
+
+/// What is kept on disk about walls goes by their description: two clouds must not pass for each other.
+TEST(MeshSurface, OfPointsIsToldByWhatIsInItsFile) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("migiwa_clouds_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> descriptions;
+  for (const double radius : {0.3, 0.25}) {
+    const Directions directions = fibonacciDirections(400);
+    std::ofstream file(folder / "cloud.xyz");
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      const Vec3d n(directions.x[k], directions.y[k], directions.z[k]);
+      file << radius * n.x() << ' ' << radius * n.y() << ' ' << radius * n.z() << ' ' << n.x() << ' ' << n.y()
+           << ' ' << n.z() << '\n';
+    }
+    file.close();
+    const Scene scene = parseScene(
+        R"({ "format": 1, "boundary": { "surfaces": [
+           { "shape": "mesh", "file": "cloud.xyz", "fluid": "inside" } ] } })",
+        folder / "scene.json");
+    const Boundary walls(wallsFor(scene.surfaces, 0.1F));
+    EXPECT_NEAR(walls.distance(Vec3f::Zero()), radius, 0.01);
+    ASSERT_TRUE(scene.surfaces.front()->fitError());
+    EXPECT_LT(*scene.surfaces.front()->fitError(), 0.01);
+    descriptions.push_back(describeWalls(walls));
+  }
+  EXPECT_NE(descriptions[0], descriptions[1]);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(BoxOf, SeesABoxHoweverItIsTurnedAndNothingElse) {

@@ -75,9 +75,9 @@ TEST(WallIndex, BoundariesAnswerAsIfTheyAskedEveryWall) {
 }
 
 TEST(WallIndex, WithoutTheNearestItHasWhatIsInReachOnly) {
-  const auto walls = manyWalls(300, 2);
+  const Boundary walls(manyWalls(300, 2));
   std::vector<const Surface*> pointers;
-  for (std::size_t k = 2; k < walls.size(); ++k) pointers.push_back(walls[k].get());
+  for (std::size_t k = 2; k < walls.surfaces().size(); ++k) pointers.push_back(walls.surfaces()[k].get());
   const WallIndex index(pointers, 0.1F, false);
   for (const Vec3f& p : places(5000)) {
     const auto near = index.near(p);
@@ -90,6 +90,20 @@ TEST(WallIndex, WithoutTheNearestItHasWhatIsInReachOnly) {
   }
   // Far away there is the one that moves alone.
   EXPECT_EQ(index.near({50, 50, 50}).size(), 1U);
+}
+
+TEST(WallIndex, AWallThatMovesIsFoundWhereItHasGone) {
+  const auto walls = manyWalls(300, 1);
+  Boundary all(walls), indexed(walls);
+  indexed.indexWalls(0.2F);
+  all.moveTo(1.4, 1.5);
+  indexed.moveTo(1.4, 1.5);
+  const Bounds now = all.moving().front()->bounds();
+  for (const Vec3f& p : places(5000)) {
+    Vec3f one, other;
+    ASSERT_EQ(indexed.distance(p, one), all.distance(p, other)) << p.transpose();
+  }
+  EXPECT_LT(indexed.distance(now.center().cast<float>()), 0);
 }
 
 TEST(WallIndex, FewWallsAreAskedOneByOne) {
