@@ -335,11 +335,12 @@ void orient(TriangleMesh& mesh, std::span<const Part> closed, std::span<const Pa
     }
     return flips;
   };
-  const std::size_t turned =
-      turn(mesh, closed, turnsOfClosed(mesh, closed, byMost(closed), notes)) + turn(mesh, open, byMost(open));
-  if (turned > 0)
-    notes.push_back(counted(turned, "triangle was", "triangles were") +
-                    " turned to face outwards as the others do");
+  const auto note = [&](std::size_t turned, const char* how) {
+    if (turned > 0)
+      notes.push_back(counted(turned, "triangle was", "triangles were") + " turned to face " + how);
+  };
+  note(turn(mesh, closed, turnsOfClosed(mesh, closed, byMost(closed), notes)), "outwards as the others do");
+  note(turn(mesh, open, byMost(open)), "the same way as their neighbours");
 }
 
 /// Leaves out pairs of triangles with the same corners that face each other's backs: where parts touch.
