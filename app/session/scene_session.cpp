@@ -255,7 +255,7 @@ SceneSession::Answer SceneSession::applyRequest(Request request, bool last) {
   return answer;
 }
 
-void SceneSession::read(std::string text, SceneChange& change, Files& named) {
+void SceneSession::read(const std::string& text, SceneChange& change, Files& named) {
   Scene scene = parseScene(text, reader_.file, reader_.options.overrides, named);
   std::string start = startOf(scene);
   if (start != reader_.start)

@@ -283,7 +283,7 @@ class SceneSession {
   Answer applyRequest(Request request, bool last);
   /// Writes what is requested, and returns the text that was written.
   std::string write(const SaveRequest& request);
-  void read(std::string text, SceneChange& change, Files& named);
+  void read(const std::string& text, SceneChange& change, Files& named);
 
   // Of who asks.
   std::filesystem::path file_;

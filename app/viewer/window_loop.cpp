@@ -88,7 +88,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
     }
     if (std::string now = session.preparing(); now != preparing) {
       preparing = std::move(now);
-      window.setTitle(preparing.empty() ? title : preparing + " - " + title);
+      window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
     }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
     if (const std::optional<Settings> inForce = simulation->takeRefusal()) {
@@ -126,11 +126,12 @@ struct Prepared {
 /// Shows what is done until it is done; null: the window was closed before.
 std::optional<Prepared> awaited(std::future<Prepared>& preparing, const PreparationStatus& status,
                                 GlfwWindow& window, const std::string& name) {
+  const std::string title = name + " - Migiwa";
   std::optional<PreparationView> view;
   while (preparing.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     if (window.shouldClose()) return std::nullopt;
     const std::string doing = status.text();
-    window.setTitle((doing.empty() ? "preparing" : doing) + " - " + name + " - Migiwa");
+    window.setTitle(std::string(doing.empty() ? "preparing" : doing).append(" - ").append(title));
     if (const auto [width, height] = window.framebufferSize(); width > 0 && height > 0) {
       if (!view) view.emplace(name, window.contentScale());
       view->draw(doing, width, height);

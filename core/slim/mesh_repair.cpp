@@ -336,8 +336,9 @@ void orient(TriangleMesh& mesh, std::span<const Part> closed, std::span<const Pa
     return flips;
   };
   const auto note = [&](std::size_t turned, const char* how) {
-    if (turned > 0)
-      notes.push_back(counted(turned, "triangle was", "triangles were") + " turned to face " + how);
+    if (turned == 0) return;
+    std::string text = counted(turned, "triangle was", "triangles were");
+    notes.push_back(text.append(" turned to face ").append(how));
   };
   note(turn(mesh, closed, turnsOfClosed(mesh, closed, byMost(closed), notes)), "outwards as the others do");
   note(turn(mesh, open, byMost(open)), "the same way as their neighbours");
@@ -376,7 +377,8 @@ void separate(TriangleMesh& mesh, const std::vector<Part>& parts) {
         const std::uint32_t shared = corner;
         if (met[shared] != part) {
           own[shared] = met[shared] == kNone ? shared : static_cast<std::uint32_t>(mesh.vertices.size());
-          if (met[shared] != kNone) mesh.vertices.push_back(Vec3f(mesh.vertices[shared]));
+          const Vec3f place = mesh.vertices[shared];
+          if (met[shared] != kNone) mesh.vertices.push_back(place);
           met[shared] = part;
         }
         corner = own[shared];
