@@ -402,10 +402,14 @@ void savePicture(const Image& image) {
 }
 
 int view(const ViewOptions& options, const CommonOptions& common) {
-  const Scene scene =
-      readScene(options.scene.empty() ? defaultScene() : fs::path(options.scene), common.overrides);
-  requireSteppable(scene.boundary, scene.file);
-  runWindow(scene, {common.threads, common.overrides, !options.paused, options.frames, savePicture});
+  const fs::path file = options.scene.empty() ? defaultScene() : fs::path(options.scene);
+  const auto read = [&] {
+    Scene scene = readScene(file, common.overrides);
+    requireSteppable(scene.boundary, scene.file);
+    return scene;
+  };
+  runWindow(file.stem().string(), read,
+            {common.threads, common.overrides, !options.paused, options.frames, savePicture});
   return kDone;
 }
 

@@ -11,8 +11,6 @@
 #include <system_error>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "app/commands/command.h"
 #include "app/platform/context.h"
 #include "app/render/image.h"
@@ -20,6 +18,7 @@
 #include "core/base/files.h"
 #include "core/base/hash.h"
 #include "core/base/messages.h"
+#include "core/scene/json.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
@@ -318,8 +317,6 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Sums of steps miss round times by what a double cannot hold.
 double roundedTime(double seconds) {
   return std::round(seconds * 1e9) / 1e9;
@@ -351,7 +348,7 @@ void write(const std::filesystem::path& file, const Image& image, const Json& si
   std::filesystem::path beside = file;
   beside.replace_extension(".json");
   writeTextFile(file, encodePng(image));
-  writeTextFile(beside, sidecar.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  writeTextFile(beside, prettyJson(sidecar));
 }
 
 }  // namespace

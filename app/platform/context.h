@@ -84,6 +84,7 @@ class GlfwWindow final : public GlContext {
   std::string renderer() const override;
 
   bool shouldClose() const;
+  void setTitle(const std::string& title);
   /// Waits at most `seconds` for something to happen, then says what happened since the last call.
   InputState waitForInput(double seconds);
   /// Whether the last call of waitForInput() saw anything, a resize or an uncovered window included.

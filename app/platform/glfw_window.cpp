@@ -125,6 +125,10 @@ bool GlfwWindow::shouldClose() const {
   return glfwWindowShouldClose(state_->window) == GLFW_TRUE;
 }
 
+void GlfwWindow::setTitle(const std::string& title) {
+  glfwSetWindowTitle(state_->window, title.c_str());
+}
+
 InputState GlfwWindow::waitForInput(double seconds) {
   State& state = *state_;
   state.happened = false;

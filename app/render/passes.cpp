@@ -57,14 +57,14 @@ void LinePass::set(std::span<const LineSegment> lines) {
                     GL_DYNAMIC_DRAW);
 }
 
-void LinePass::draw(float widthPixels, float alpha) const {
+void LinePass::draw(float widthPixels, const std::array<float, 4>& color) const {
   if (count_ == 0) return;
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   program_.set("width", widthPixels);
-  program_.set("lineColor", 0.16F, 0.22F, 0.30F, alpha);
+  program_.set("lineColor", color[0], color[1], color[2], color[3]);
   program_.use();
   glBindVertexArray(layout_.name());
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);

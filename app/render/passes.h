@@ -38,7 +38,7 @@ class LinePass {
   /// From now on draws these.
   void set(std::span<const LineSegment> lines);
   /// Where an opaque line is made of short segments, these do not show.
-  void draw(float widthPixels, float alpha) const;
+  void draw(float widthPixels, const std::array<float, 4>& color) const;
 
  private:
   ShaderProgram program_;

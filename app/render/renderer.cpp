@@ -1,12 +1,17 @@
 #include "app/render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
 namespace migiwa {
 namespace {
+
+using Ink = std::array<float, 4>;
+constexpr Ink kWallInk{0.16F, 0.22F, 0.30F, 0.9F}, kSectionInk{0.16F, 0.22F, 0.30F, 1},
+    kMouthInk{0.02F, 0.42F, 0.62F, 0.9F}, kDrainInk{0.72F, 0.27F, 0.12F, 0.9F};
 
 /// Towards the camera along the clip axis: +1 or -1.
 double clipSide(const Shot& shot) {
@@ -69,6 +74,8 @@ Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
       groundPass_(ground_),
       uniforms_(makeBuffer()) {
   setWalls(surroundings.walls);
+  mouthPass_.set(surroundings.mouths);
+  drainPass_.set(surroundings.drains);
   glNamedBufferStorage(uniforms_.name(), sizeof(FrameUniforms), nullptr, GL_DYNAMIC_STORAGE_BIT);
 }
 
@@ -113,7 +120,7 @@ void Renderer::drawSection(const Shot& shot, float width) {
     sectionOf_ = shot.clip;
     sectionSide_ = side;
   }
-  sectionPass_.draw(width, 1);
+  sectionPass_.draw(width, kSectionInk);
 }
 
 void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget& target) {
@@ -142,7 +149,9 @@ void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget
     surfacePass_.drawOpaque();
     drawSection(shot, 1.4F * width);
   }
-  linePass_.draw(width, 0.9F);
+  linePass_.draw(width, kWallInk);
+  mouthPass_.draw(width, kMouthInk);
+  drainPass_.draw(width, kDrainInk);
   if (!shot.nodes) surfacePass_.drawGlass();
 }
 

@@ -21,6 +21,7 @@ struct Surroundings {
   Bounds bounds;
   Vec3d up = Vec3d::UnitY();
   WallDrawing walls;
+  std::vector<LineSegment> mouths, drains;  ///< outlines of what gives fluid, and of what takes it
 };
 
 /// How one picture is taken.
@@ -58,7 +59,7 @@ class Renderer {
   SpherePass spherePass_;
   SurfacePass surfacePass_;
   NodePass nodePass_;
-  LinePass linePass_, sectionPass_;
+  LinePass linePass_, sectionPass_, mouthPass_, drainPass_;
   GroundPass groundPass_;
   GlBuffer uniforms_;
   std::shared_ptr<const WallDrawing> movedWalls_;  ///< that linePass_ shows; null: those of the start

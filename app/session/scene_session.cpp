@@ -13,6 +13,22 @@
 
 namespace migiwa {
 
+void PreparationStatus::reached(std::string_view what, double part) {
+  const std::lock_guard lock(mutex_);
+  what_ = what;
+  part_ = part;
+}
+
+void PreparationStatus::ended() {
+  const std::lock_guard lock(mutex_);
+  what_.clear();
+}
+
+std::string PreparationStatus::text() const {
+  const std::lock_guard lock(mutex_);
+  return what_.empty() ? std::string() : what_ + formatNumber(": %.0f %%", 100 * part_);
+}
+
 namespace {
 
 /// File systems keep times in steps, some in steps of two seconds.
@@ -179,6 +195,7 @@ std::filesystem::path SceneSession::stateFile() const {
 }
 
 void SceneSession::work() {
+  const ProgressScope watched(preparing_);
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [this] { return quit_ || look_ || !requests_.empty(); });
@@ -238,7 +255,7 @@ SceneSession::Answer SceneSession::applyRequest(Request request, bool last) {
   return answer;
 }
 
-void SceneSession::read(std::string text, SceneChange& change, Files& named) {
+void SceneSession::read(const std::string& text, SceneChange& change, Files& named) {
   Scene scene = parseScene(text, reader_.file, reader_.options.overrides, named);
   std::string start = startOf(scene);
   if (start != reader_.start)

@@ -12,18 +12,35 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "app/session/ui_state.h"
 #include "core/base/hash.h"
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/state.h"
 #include "core/study/study.h"
 
 namespace migiwa {
+
+// What a thread that prepares a scene is doing, for another one to show.
+
+class PreparationStatus final : public ProgressObserver {
+ public:
+  void reached(std::string_view what, double part) override;
+  void ended() override;
+  /// Such as "fitting 2000 points: 45 %"; empty where nothing is done that takes long.
+  std::string text() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::string what_;
+  double part_ = 0;
+};
 
 // Notices that files have changed, however they were written: in place, or anew and renamed over the old one.
 
@@ -234,6 +251,8 @@ class SceneSession {
 
   /// Until poll() has something to say about what was begun, and the files have been looked at.
   void wait();
+  /// What is being done about a change that takes long, as PreparationStatus says it.
+  std::string preparing() const { return preparing_.text(); }
 
   const std::filesystem::path& file() const { return file_; }
   /// Beside the scene's file: where its state is kept.
@@ -264,7 +283,7 @@ class SceneSession {
   Answer applyRequest(Request request, bool last);
   /// Writes what is requested, and returns the text that was written.
   std::string write(const SaveRequest& request);
-  void read(std::string text, SceneChange& change, Files& named);
+  void read(const std::string& text, SceneChange& change, Files& named);
 
   // Of who asks.
   std::filesystem::path file_;
@@ -286,6 +305,7 @@ class SceneSession {
   std::deque<Request> requests_;
   std::deque<Answer> answers_;
   bool look_ = false, busy_ = false, quit_ = false;
+  PreparationStatus preparing_;
 
   std::thread thread_;
 };

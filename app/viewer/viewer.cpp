@@ -9,15 +9,29 @@
 #include "app/render/projection.h"
 #include "app/session/ui_state.h"
 #include "core/base/messages.h"
+#include "core/walls/shapes.h"
 
 namespace migiwa {
 namespace {
 
 constexpr double kDoubleClickSeconds = 0.3;
 
+void addOutline(const Drain& drain, const Bounds& scene, std::vector<LineSegment>& out) {
+  if (drain.shape == DrainShape::sphere)
+    Sphere(drain.center, drain.radius, Sphere::Fluid::inside).wireframe(scene, out);
+  else
+    Box(drain.min, drain.max, Box::Fluid::inside, drain.rotation).wireframe(scene, out);
+}
+
 Surroundings surroundings(const Scene& scene, WallDrawing walls) {
-  Surroundings result{scene.bounds(), scene.view.camera.up, std::move(walls)};
+  Surroundings result{scene.bounds(), scene.view.camera.up, std::move(walls), {}, {}};
   if (scene.gravity.norm() > 0) result.up = -scene.gravity;
+  for (const Drain& drain : scene.drains) addOutline(drain, result.bounds, result.drains);
+  for (const Emitter& emitter : scene.emitters) {
+    const std::vector<Vec3d> outline = emitter.outline();
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      result.mouths.push_back({outline[k].cast<float>(), outline[(k + 1) % outline.size()].cast<float>()});
+  }
   return result;
 }
 
@@ -99,6 +113,15 @@ Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width
   laidOut_ = false;
   frame(view, run, InputState{}, width, height);
   return picture();
+}
+
+void PreparationView::draw(const std::string& doing, int width, int height) {
+  if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
+  target_->beginScene();
+  target_->beginOverlay();
+  ui_.begin(width, height, InputState{});
+  ui_.caption({name_, {{"preparing", doing.empty() ? "the scene" : doing}}}, {0, 0, width, height});
+  ui_.end(true);
 }
 
 UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Rect& area) {

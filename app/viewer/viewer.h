@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/platform/context.h"
@@ -87,6 +88,24 @@ class Viewer {
   double sinceClick_ = 0;
 };
 
+// What a window shows while its scene is being prepared.
+
+class PreparationView {
+ public:
+  /// `scale` as of a viewer.
+  PreparationView(std::string name, double scale) : name_(std::move(name)), ui_(scale) {}
+
+  /// `doing` as PreparationStatus has it.
+  void draw(const std::string& doing, int width, int height);
+  Image picture() const { return target_->read(); }
+  void copyToWindow() const { target_->copyToWindow(target_->width(), target_->height()); }
+
+ private:
+  std::string name_;
+  Ui ui_;
+  std::optional<RenderTarget> target_;
+};
+
 // The window's loop: input in, commands to the simulation's thread, one frame out.
 
 class Viewer;
@@ -109,8 +128,10 @@ struct WindowOptions {
   std::function<void(const DrawnFrame&)> drawn{};
 };
 
-/// Opens a window on the scene and returns when it is closed. Throws MissingError where there is no display.
-void runWindow(const Scene& scene, const WindowOptions& options);
+/// Opens a window on the scene and returns when it is closed. `read` is called on another thread, meanwhile
+/// the window says what is being done about the scene `name`. Throws what `read` throws, and MissingError
+/// where there is no display.
+void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options);
 
 // The speed that fills the colour map when pictures show speed.
 

@@ -2,11 +2,16 @@
 #include <chrono>
 #include <future>
 #include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "app/platform/context.h"
 #include "app/session/session.h"
 #include "app/viewer/viewer.h"
+#include "core/base/messages.h"
+#include "core/base/progress.h"
 
 namespace migiwa {
 namespace {
@@ -16,6 +21,10 @@ constexpr int kWidth = 1280, kHeight = 720;
 constexpr double kShortestFrame = 1.0 / 60;
 /// Panels answer to an input over a few frames.
 constexpr int kFramesAfterInput = 3;
+
+/// So long nothing is shown while a scene is prepared, and then again after so long.
+constexpr std::chrono::milliseconds kPatience(300);
+constexpr double kBetweenSigns = 0.1;  // (s)
 
 /// How often files and readers are asked for news (s).
 constexpr double kBetweenLooks = 0.25;
@@ -42,14 +51,14 @@ void printWarnings(const Scene& scene) {
     std::cerr << scene.file.string() << ": warning: " << warning << '\n';
 }
 
-}  // namespace
-
-void runWindow(const Scene& scene, const WindowOptions& options) {
+/// The loop, until the window is closed.
+void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThread> simulation,
+          const WindowOptions& options) {
   using Clock = std::chrono::steady_clock;
-  const std::string name = scene.name.empty() ? scene.stem() : scene.name;
-  GlfwWindow window(name + " - Migiwa", kWidth, kHeight);
+  const std::string title = (scene.name.empty() ? scene.stem() : scene.name) + " - Migiwa";
+  std::string preparing;
+  window.setTitle(title);
   SceneSession session(scene, {options.overrides, options.threads, Pace::realTime});
-  auto simulation = std::make_unique<SimulationThread>(scene, options.threads, Pace::realTime);
   printWarnings(simulation->scene());
   SceneEditor editor = makeEditor(session);
   WhatIfModel whatIf;
@@ -77,6 +86,10 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
         redraws = kFramesAfterInput;
       }
     }
+    if (std::string now = session.preparing(); now != preparing) {
+      preparing = std::move(now);
+      window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
+    }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
     if (const std::optional<Settings> inForce = simulation->takeRefusal()) {
       viewer.setSettings(*inForce);
@@ -103,6 +116,55 @@ void runWindow(const Scene& scene, const WindowOptions& options) {
     ++drawn;
   }
   if (saving.valid()) saving.get();
+}
+
+struct Prepared {
+  Scene scene;
+  std::unique_ptr<SimulationThread> simulation;
+};
+
+/// Shows what is done until it is done; null: the window was closed before.
+std::optional<Prepared> awaited(std::future<Prepared>& preparing, const PreparationStatus& status,
+                                GlfwWindow& window, const std::string& name) {
+  const std::string title = name + " - Migiwa";
+  std::optional<PreparationView> view;
+  while (preparing.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    if (window.shouldClose()) return std::nullopt;
+    const std::string doing = status.text();
+    window.setTitle(std::string(doing.empty() ? "preparing" : doing).append(" - ").append(title));
+    if (const auto [width, height] = window.framebufferSize(); width > 0 && height > 0) {
+      if (!view) view.emplace(name, window.contentScale());
+      view->draw(doing, width, height);
+      view->copyToWindow();
+      window.swap();
+    }
+    window.waitForInput(kBetweenSigns);
+  }
+  return preparing.get();
+}
+
+}  // namespace
+
+void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options) {
+  PreparationStatus status;
+  std::future<Prepared> preparing = std::async(std::launch::async, [&] {
+    const ProgressScope watched(status);
+    Scene scene = read();
+    auto simulation = std::make_unique<SimulationThread>(scene, options.threads, Pace::realTime);
+    return Prepared{std::move(scene), std::move(simulation)};
+  });
+  std::optional<Prepared> prepared;
+  if (preparing.wait_for(kPatience) == std::future_status::ready) prepared = preparing.get();
+  std::optional<GlfwWindow> window;
+  try {
+    window.emplace(name + " - Migiwa", kWidth, kHeight);
+  } catch (const MissingError&) {
+    // What is wrong with the scene is told first.
+    if (!prepared) preparing.get();
+    throw;
+  }
+  if (!prepared) prepared = awaited(preparing, status, *window, name);
+  if (prepared) show(*window, prepared->scene, std::move(prepared->simulation), options);
 }
 
 namespace {

@@ -221,6 +221,17 @@ void describeShapes(Visitor& visitor, std::string_view key, const FieldDoc& doc,
   });
 }
 
+/// An object whose "shape", one of an enum's names, says which fields it has: `fields` visits those.
+template <class Visitor, class Shape, std::size_t kCount, class Fields>
+void describeShaped(Visitor& visitor, Shape& shape, const std::array<std::string_view, kCount>& names,
+                    const FieldDoc& doc, const Fields& fields) {
+  int index = static_cast<int>(shape);
+  visitor.variant(kShapeKey, index, names, doc, [&](Visitor& own, int picked) {
+    if constexpr (Visitor::kChanges) shape = static_cast<Shape>(picked);
+    fields(own);
+  });
+}
+
 // A turn about an axis through something's centre, as scenes write it.
 
 /// The right-handed turn by an angle (rad) about a unit axis, after Rodrigues.

@@ -1,13 +1,17 @@
 // Files and memory: a cache on disk, output that is whole or not there, and how much memory is left.
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace migiwa {
 
@@ -30,6 +34,31 @@ class CacheBypass {
   CacheBypass& operator=(const CacheBypass&) = delete;
 
   static bool active();
+};
+
+/// The last results of something that takes long, by what they are made from: comparisons and restarts read
+/// the same scene again and again. Whoever asks while another's is made waits. What is made depends on the
+/// key alone, so nobody sees a difference.
+template <class Key, class Result>
+class KeptResults {
+ public:
+  explicit KeptResults(std::size_t most) : most_(most) {}
+
+  template <class Make>
+  Result get(const Key& key, const Make& make) {
+    const std::lock_guard lock(mutex_);
+    if (!CacheBypass::active())
+      for (const auto& [known, result] : kept_)
+        if (known == key) return result;
+    kept_.emplace_front(key, make(key));
+    if (kept_.size() > most_) kept_.pop_back();
+    return kept_.front().second;
+  }
+
+ private:
+  std::size_t most_;
+  std::mutex mutex_;
+  std::deque<std::pair<Key, Result>> kept_;
 };
 
 // Files that are either whole or not there.

@@ -145,7 +145,7 @@ void ParticleExport::readEarlierEntries(long firstFile) {
   std::error_code code;
   if (!fs::exists(listFile_, code)) return;
   try {
-    const Json list = Json::parse(readTextFile(listFile_, "a list of exported files"));
+    const Json list = readJson(readTextFile(listFile_, "a list of exported files"));
     for (const Json& entry : list.at("files")) {
       Entry earlier{entry.at("file").get<std::string>(), entry.at("time").get<double>(),
                     entry.at("frame").get<long>(), entry.at("particles").get<std::size_t>(),

@@ -194,8 +194,9 @@ void requireSameScene(const Json& header, const Simulation& simulation, const st
     faults.push_back({place + ":/scene" + fault.pointer, fault.message});
   if (const Json expected = originEntry(simulation.scene()), found = header.value("origin", originEntry({}));
       faults.empty() && found != expected)
-    throw InputError(place + ":/origin", "expected positions relative to " + expected.dump() + ", found " +
-                                             found.dump() + "; another version of migiwa wrote it");
+    throw InputError(place + ":/origin", "expected positions relative to " + compactJson(expected) +
+                                             ", found " + compactJson(found) +
+                                             "; another version of migiwa wrote it");
   if (faults.empty()) return;
   faults.back().message += "; a save goes on only with the scene and the settings that it was made with";
   throw InputError(std::move(faults));

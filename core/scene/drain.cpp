@@ -33,14 +33,12 @@ void Drain::fields(Visitor& visitor, Visited<Visitor, Drain>& self) {
 }
 
 void Drain::describe(FieldWriter& visitor) const {
-  visitor.variant(kShapeKey, static_cast<int>(shape), kDrainShapeNames, kRegionDoc,
-                  [this](FieldWriter& region, int) { fields(region, *this); });
+  describeShaped(visitor, shape, kDrainShapeNames, kRegionDoc,
+                 [this](FieldWriter& region) { fields(region, *this); });
 }
 
 void Drain::describe(FieldVisitor& visitor, double spacing) {
-  int picked = static_cast<int>(shape);
-  visitor.variant(kShapeKey, picked, kDrainShapeNames, kRegionDoc, [&](FieldVisitor& region, int index) {
-    shape = static_cast<DrainShape>(index);
+  describeShaped(visitor, shape, kDrainShapeNames, kRegionDoc, [&](FieldVisitor& region) {
     fields(region, *this);
     check(region, spacing);
   });

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -74,14 +75,12 @@ void Emitter::fields(Visitor& visitor, Visited<Visitor, Emitter>& self) {
 }
 
 void Emitter::describe(FieldWriter& visitor) const {
-  visitor.variant(kShapeKey, static_cast<int>(shape), kMouthShapeNames, kMouthDoc,
-                  [this](FieldWriter& mouth, int) { fields(mouth, *this); });
+  describeShaped(visitor, shape, kMouthShapeNames, kMouthDoc,
+                 [this](FieldWriter& mouth) { fields(mouth, *this); });
 }
 
 void Emitter::describe(FieldVisitor& visitor, double spacing) {
-  int picked = static_cast<int>(shape);
-  visitor.variant(kShapeKey, picked, kMouthShapeNames, kMouthDoc, [&](FieldVisitor& mouth, int index) {
-    shape = static_cast<MouthShape>(index);
+  describeShaped(visitor, shape, kMouthShapeNames, kMouthDoc, [&](FieldVisitor& mouth) {
     fields(mouth, *this);
     check(mouth, spacing);
   });
@@ -155,6 +154,22 @@ Bounds Emitter::bounds() const {
     for (const double v : {first[1], -first[1]})
       bounds.include(center + u * size[0] * frame.x + v * size[1] * frame.y);
   return bounds;
+}
+
+std::vector<Vec3d> Emitter::outline() const {
+  constexpr int kAround = 48;
+  const auto [x, y] = frameOf(*this);
+  std::vector<Vec3d> corners;
+  if (shape == MouthShape::disc) {
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kAround;
+      corners.emplace_back(center + radius * (portable::cos(angle) * x + portable::sin(angle) * y));
+    }
+    return corners;
+  }
+  for (const auto& [u, v] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
+    corners.emplace_back(center + u * size[0] * x + v * size[1] * y);
+  return corners;
 }
 
 MouthLayer mouthLayer(const Emitter& emitter, double spacing) {

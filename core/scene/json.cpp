@@ -8,26 +8,22 @@ namespace {
 
 constexpr std::size_t kLongestQuote = 60;
 
-std::string compact(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 void writePretty(const Json& value, const std::string& indent, std::string& out) {
   const std::string inner = indent + "  ";
   const bool flat = value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& entry) {
                       return entry.is_structured() && !entry.empty();
                     });
   if (!value.is_structured() || value.empty()) {
-    out += compact(value);
+    out += compactJson(value);
   } else if (flat) {
     out += "[";
-    for (std::size_t k = 0; k < value.size(); ++k) out += (k > 0 ? ", " : "") + compact(value[k]);
+    for (std::size_t k = 0; k < value.size(); ++k) out += (k > 0 ? ", " : "") + compactJson(value[k]);
     out += "]";
   } else {
     out += value.is_array() ? "[" : "{";
     const char* separator = "\n";
     for (const auto& item : value.items()) {
-      out += separator + inner + (value.is_array() ? "" : compact(Json(item.key())) + ": ");
+      out += separator + inner + (value.is_array() ? "" : compactJson(Json(item.key())) + ": ");
       writePretty(item.value(), inner, out);
       separator = ",\n";
     }
@@ -45,6 +41,10 @@ bool isBelow(std::string_view pointer, std::string_view ancestor) {
 
 Json readJson(std::string_view text) {
   return Json::parse(text);
+}
+
+std::string compactJson(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string childPointer(std::string_view pointer, std::string_view key) {
@@ -81,7 +81,7 @@ std::string describeJson(const Json& value) {
     case Json::value_t::string:
       return quotedText(value.get_ref<const std::string&>());
     default:
-      return value.dump();
+      return compactJson(value);
   }
 }
 
@@ -89,7 +89,7 @@ std::string quotedText(std::string_view text) {
   std::size_t size = std::min(text.size(), kLongestQuote);
   while (size < text.size() && size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
   const std::string shown(text.substr(0, size));
-  return Json(shown).dump(-1, ' ', false, Json::error_handler_t::replace) + (size < text.size() ? "..." : "");
+  return compactJson(shown) + (size < text.size() ? "..." : "");
 }
 
 std::string prettyJson(const Json& value) {

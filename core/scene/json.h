@@ -35,8 +35,12 @@ struct JsonDocument {
 };
 
 JsonDocument parseJson(std::string_view text);
+// The library's reader and writer are compiled in one file each: that takes seconds.
+
 /// The same where no user writes the text. Throws Json::exception.
 Json readJson(std::string_view text);
+/// Text without spaces. What is no UTF-8 is replaced.
+std::string compactJson(const Json& value);
 
 /// `pointer` with one more token, escaped as RFC 6901 asks.
 std::string childPointer(std::string_view pointer, std::string_view key);

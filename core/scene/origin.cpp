@@ -124,10 +124,6 @@ std::vector<Bounds> extentsOf(const std::vector<Entry>& fluid, const std::vector
   return extents;
 }
 
-double largestSide(const Bounds& bounds) {
-  return bounds.size().maxCoeff();
-}
-
 /// The number with the fewest digits in an interval, and of several the one nearest to its middle: scenes are
 /// moved by round numbers, and then their relative coordinates are those that they had before.
 double roundest(double low, double high) {
@@ -163,11 +159,11 @@ Vec3d originOf(const Json& root, const FaultList& faults) {
   for (const Bounds& extent : extents) {
     Bounds both = scene;
     both.include(extent);
-    if (scene.empty() || largestSide(both) <= reach) scene = both;
+    if (scene.empty() || both.size().maxCoeff() <= reach) scene = both;
   }
   Vec3d origin = Vec3d::Zero();
   if (scene.empty()) return origin;
-  const double size = largestSide(scene);
+  const double size = scene.size().maxCoeff();
   // Around what is a point, too, there are places as good.
   if (size == 0) scene = scene.grown(0.01 * reach);
   for (int axis = 0; axis < 3; ++axis) {

@@ -268,7 +268,7 @@ class Reference {
     for (const Json& condition : object.value("allOf", Json::array())) {
       const Json& deciders = condition["if"]["properties"];
       if (!deciders.contains(key)) continue;
-      const std::string variant = Json(key).dump() + ": " + deciders[key]["const"].dump();
+      const std::string variant = compactJson(Json(key)) + ": " + compactJson(deciders[key]["const"]);
       addRows(newTable(tables_[table].pointer, "", variant), "", condition["then"]);
     }
   }
@@ -296,8 +296,8 @@ class Reference {
     if (type == "string") return "text";
     if (type == "object") return "object";
     if (schema["items"].contains("$ref")) return "list of objects";
-    if (schema.contains("minItems")) return schema["minItems"].dump() + " numbers";
-    return "list of " + schema["items"]["minItems"].dump() + " numbers each";
+    if (schema.contains("minItems")) return compactJson(schema["minItems"]) + " numbers";
+    return "list of " + compactJson(schema["items"]["minItems"]) + " numbers each";
   }
 
   static std::string ranged(const std::string& kind, const Json& schema) {
@@ -314,10 +314,10 @@ class Reference {
     const Json& value = schema["default"];
     if (value.is_array()) {
       std::string text;
-      for (const Json& number : value) text += (text.empty() ? "" : ", ") + number.dump();
+      for (const Json& number : value) text += (text.empty() ? "" : ", ") + compactJson(number);
       return "[" + text + "]";
     }
-    if (!value.is_string()) return value.dump();
+    if (!value.is_string()) return compactJson(value);
     return schema.contains("enum") ? code(value.get<std::string>()) : value.get<std::string>();
   }
 

@@ -186,6 +186,8 @@ struct Emitter {
   /// Particles that it gives up to `time` (s), at most: a layer more than the rate asks for.
   double count(double spacing, double time) const;
   Bounds bounds() const;
+  /// Corners of the mouth's rim in their order, for pictures; those of a disc lie on its circle.
+  std::vector<Vec3d> outline() const;
 
  private:
   template <class Visitor>

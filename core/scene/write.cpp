@@ -193,7 +193,7 @@ std::string startOf(Scene scene) {
   scene.boundary = plain.boundary;
   scene.effects.clear();
   scene.solver = plain.solver;
-  return sceneIdentity(scene).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return compactJson(sceneIdentity(scene));
 }
 
 Json sceneIdentity(const Scene& scene) {
@@ -217,7 +217,7 @@ std::vector<DocumentFault> identityFaults(const Json& expected, const Json& foun
     const bool both = expected.contains(place) && found.contains(place);
     const auto shown = [&](const Json& side) {
       if (!side.contains(place)) return std::string("none");
-      return both && sameSize(place) ? side.at(place).dump() : describeJson(side.at(place));
+      return both && sameSize(place) ? compactJson(side.at(place)) : describeJson(side.at(place));
     };
     faults.push_back({place.to_string(), "expected " + shown(expected) + ", found " + shown(found)});
   }

@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 #include <unordered_map>
 #include <utility>
@@ -21,83 +22,6 @@ std::string at(const Vec3f& p) {
   std::ostringstream text;
   text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
   return text.str();
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-void weld(TriangleMesh& mesh) {
-  std::vector<std::uint32_t> order(mesh.vertices.size()), same(mesh.vertices.size());
-  for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    const Vec3f &p = mesh.vertices[a], &q = mesh.vertices[b];
-    if (p.x() != q.x()) return p.x() < q.x();
-    if (p.y() != q.y()) return p.y() < q.y();
-    return p.z() < q.z();
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return before(a, b) || (!before(b, a) && a < b); });
-  std::vector<Vec3f> kept;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k == 0 || before(order[k - 1], order[k])) kept.push_back(mesh.vertices[order[k]]);
-    same[order[k]] = static_cast<std::uint32_t>(kept.size() - 1);
-  }
-  mesh.vertices = std::move(kept);
-  for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle) corner = same[corner];
-}
-
-/// Corners nearer to each other than this share of the mesh's diagonal are one: files write so many digits.
-constexpr double kWelded = 1e-6;
-
-/// Welds corners that nearly meet, each to the first of those that it hangs together with. After weld().
-void weldNear(TriangleMesh& mesh, std::vector<std::string>& notes) {
-  const double reach = kWelded * mesh.bounds().size().norm();
-  if (!(reach > 0)) return;
-  const NearPoints near(mesh.vertices, reach);
-  DisjointSets same(mesh.vertices.size());
-  std::size_t welded = 0;
-  for (std::uint32_t k = 0; k < mesh.vertices.size(); ++k)
-    near.within(mesh.vertices[k], [&](std::uint32_t other) {
-      if (same.join(k, other)) ++welded;
-      return true;
-    });
-  if (welded == 0) return;
-  for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle) corner = same.least(corner);
-  std::ostringstream text;
-  text.precision(2);
-  text << counted(welded, "corner was", "corners were") << " welded to others within " << reach
-       << " m, a millionth of the mesh's size";
-  notes.push_back(text.str());
-}
-
-/// Leaves out vertices of no triangle.
-void dropVertices(TriangleMesh& mesh) {
-  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
-  std::vector<std::uint32_t> place(mesh.vertices.size(), kUnused);
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle) place[corner] = 0;
-  std::uint32_t used = 0;
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    if (place[k] == kUnused) continue;
-    mesh.vertices[used] = mesh.vertices[k];
-    place[k] = used++;
-  }
-  mesh.vertices.resize(used);
-  for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle) corner = place[corner];
-}
-
-void dropFlat(TriangleMesh& mesh, std::vector<std::string>& notes) {
-  const std::size_t all = mesh.triangles.size();
-  std::erase_if(mesh.triangles,
-                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-  if (const std::size_t flat = all - mesh.triangles.size(); flat > 0)
-    notes.push_back(counted(flat, "triangle with two corners at the same place was",
-                            "triangles with two corners at the same place were") +
-                    " left out");
 }
 
 /// The triangles without those that are there before with the same corners, however they face.
@@ -153,9 +77,9 @@ class Edges {
                                                        std::uint32_t triangle) const {
     const std::vector<Side>& sides = sides_.at(key(a, b));
     std::size_t own = 0;
-    while (sides[own].triangle != triangle) ++own;
+    while (own < sides.size() && sides[own].triangle != triangle) ++own;
     const std::size_t other = own ^ 1U;
-    if (other >= sides.size()) return std::nullopt;
+    if (own >= sides.size() || other >= sides.size()) return std::nullopt;
     // Neighbours that face the same way run along their edge in opposite directions.
     return std::pair(sides[other].triangle, sides[own].forward != sides[other].forward);
   }
@@ -166,13 +90,49 @@ class Edges {
   };
   /// Edges with one triangle only.
   Found open(const TriangleMesh& mesh) const {
-    return count(mesh, [](std::size_t triangles) -> std::size_t { return triangles == 1 ? 1 : 0; });
+    return count(mesh, [](std::size_t triangles) { return triangles == 1; });
   }
-  /// Triangles beyond two at edges where they are no pairs.
-  Found odd(const TriangleMesh& mesh) const {
-    return count(mesh, [](std::size_t triangles) -> std::size_t {
-      return triangles > 2 && triangles % 2 == 1 ? triangles - 2 : 0;
-    });
+  /// Edges with more than two triangles that are no pairs: where sheets meet.
+  Found odd(const TriangleMesh& mesh) const { return count(mesh, isOdd); }
+
+  /// Makes an end of each sheet at the edges where an odd number of them meet, but of those that go on as
+  /// one: sheets that end elsewhere, too, are taken off until the others are pairs. Where none ends
+  /// elsewhere, as in a box with a wall across it, all do.
+  void cutOdd(std::size_t triangles) {
+    DisjointSets sheets(triangles);
+    std::vector<bool> ends(triangles, false), taken(triangles, false);  // of a sheet's least triangle
+    const auto join = [&](const std::vector<Side>& sides) {
+      const std::uint32_t one = sheets.least(sides[0].triangle), other = sheets.least(sides[1].triangle);
+      sheets.join(one, other);
+      ends[std::min(one, other)] = ends[one] || ends[other];
+    };
+    std::vector<std::uint64_t> odd;
+    for (const auto& [edge, sides] : sides_) {
+      if (sides.size() == 2) join(sides);
+      if (isOdd(sides.size())) odd.push_back(edge);
+    }
+    std::sort(odd.begin(), odd.end());
+    for (const auto& [edge, sides] : sides_)
+      if (sides.size() == 1) ends[sheets.least(sides[0].triangle)] = true;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const std::uint64_t edge : odd) {
+        std::vector<Side>& sides = sides_[edge];
+        if (std::erase_if(sides, [&](const Side& side) { return taken[sheets.least(side.triangle)]; }) > 0) {
+          changed = true;
+          if (sides.size() == 1) ends[sheets.least(sides[0].triangle)] = true;
+          if (sides.size() == 2) join(sides);
+        }
+        if (!isOdd(sides.size())) continue;
+        const auto ending = std::find_if(sides.begin(), sides.end(),
+                                         [&](const Side& side) { return ends[sheets.least(side.triangle)]; });
+        if (ending == sides.end()) continue;
+        taken[sheets.least(ending->triangle)] = true;
+        changed = true;
+      }
+    }
+    for (const std::uint64_t edge : odd)
+      if (isOdd(sides_[edge].size())) sides_[edge].clear();
   }
   bool crowded() const {
     return std::any_of(sides_.begin(), sides_.end(), [](const auto& edge) { return edge.second.size() > 2; });
@@ -184,15 +144,15 @@ class Edges {
     Found found;
     std::uint64_t first = 0;
     for (const auto& [edge, sides] : sides_) {
-      const std::size_t more = counted(sides.size());
-      if (more == 0) continue;
+      if (!counted(sides.size())) continue;
       if (found.count == 0 || edge < first) first = edge;
-      found.count += more;
+      ++found.count;
     }
     if (found.count > 0)
       found.middle = 0.5F * (mesh.vertices[first >> 32] + mesh.vertices[first & 0xFFFFFFFFU]);
     return found;
   }
+  static bool isOdd(std::size_t triangles) { return triangles > 2 && triangles % 2 == 1; }
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
   }
@@ -203,6 +163,7 @@ class Edges {
 struct Part {
   std::vector<std::uint32_t> triangles;
   std::vector<bool> turned;
+  bool closed = true;
 };
 
 /// Appends the parts of the mesh. Returns a corner at which a surface has one side only, if there is one.
@@ -221,7 +182,10 @@ std::optional<std::uint32_t> findParts(const TriangleMesh& mesh, const Edges& ed
         const std::uint32_t a = mesh.triangles[triangle][corner],
                             b = mesh.triangles[triangle][(corner + 1) % 3];
         const auto neighbour = edges.across(a, b, triangle);
-        if (!neighbour) continue;
+        if (!neighbour) {
+          part.closed = false;
+          continue;
+        }
         const auto [other, agree] = *neighbour;
         const std::uint8_t wanted = (state[triangle] == same) == agree ? same : opposite;
         if (state[other] == unknown) {
@@ -307,7 +271,7 @@ bool liesWithin(const TriangleMesh& mesh, const Part& part, const Part& other) {
 constexpr std::size_t kMostNestedParts = 5000;
 
 /// The part that each part lies in, the outermost one; itself for one that lies in no other.
-std::vector<std::size_t> outermost(const TriangleMesh& mesh, const std::vector<Part>& parts) {
+std::vector<std::size_t> outermost(const TriangleMesh& mesh, std::span<const Part> parts) {
   std::vector<std::size_t> result(parts.size());
   std::vector<Bounds> bounds;
   for (const Part& part : parts) bounds.push_back(boundsOf(mesh, part));
@@ -326,9 +290,9 @@ std::vector<std::size_t> outermost(const TriangleMesh& mesh, const std::vector<P
   return result;
 }
 
-/// Which parts of a closed mesh have to be turned for the outermost ones to face outwards. Those within them
+/// Which closed parts have to be turned for the outermost ones to face outwards. Those within them
 /// keep how they face relative to them: inwards is the wall of a hollow.
-std::vector<bool> turnsOfClosed(const TriangleMesh& mesh, const std::vector<Part>& parts,
+std::vector<bool> turnsOfClosed(const TriangleMesh& mesh, std::span<const Part> parts,
                                 const std::vector<bool>& byMost, std::vector<std::string>& notes) {
   const std::vector<std::size_t> around = outermost(mesh, parts);
   std::vector<bool> flips;
@@ -347,26 +311,37 @@ std::vector<bool> turnsOfClosed(const TriangleMesh& mesh, const std::vector<Part
   return flips;
 }
 
-void orient(TriangleMesh& mesh, std::vector<Part>& parts, bool closed, std::vector<std::string>& notes) {
-  std::vector<bool> flips;
-  for (const Part& part : parts) {
-    const auto opposed = static_cast<std::size_t>(std::count(part.turned.begin(), part.turned.end(), true));
-    flips.push_back(2 * opposed > part.turned.size());
-  }
-  if (closed) flips = turnsOfClosed(mesh, parts, flips, notes);
+/// Turns the triangles of parts that have to be turned. Returns how many they are.
+std::size_t turn(TriangleMesh& mesh, std::span<const Part> parts, const std::vector<bool>& flips) {
   std::size_t turned = 0;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const Part& part = parts[k];
-    for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-      if (part.turned[t] == flips[k]) continue;
-      Triangle& triangle = mesh.triangles[part.triangles[t]];
+    for (std::size_t t = 0; t < parts[k].triangles.size(); ++t) {
+      if (parts[k].turned[t] == flips[k]) continue;
+      Triangle& triangle = mesh.triangles[parts[k].triangles[t]];
       std::swap(triangle[1], triangle[2]);
       ++turned;
     }
   }
-  if (turned > 0)
-    notes.push_back(counted(turned, "triangle was", "triangles were") +
-                    " turned to face outwards as the others do");
+  return turned;
+}
+
+void orient(TriangleMesh& mesh, std::span<const Part> closed, std::span<const Part> open,
+            std::vector<std::string>& notes) {
+  const auto byMost = [](std::span<const Part> parts) {
+    std::vector<bool> flips;
+    for (const Part& part : parts) {
+      const auto opposed = static_cast<std::size_t>(std::count(part.turned.begin(), part.turned.end(), true));
+      flips.push_back(2 * opposed > part.turned.size());
+    }
+    return flips;
+  };
+  const auto note = [&](std::size_t turned, const char* how) {
+    if (turned == 0) return;
+    std::string text = counted(turned, "triangle was", "triangles were");
+    notes.push_back(text.append(" turned to face ").append(how));
+  };
+  note(turn(mesh, closed, turnsOfClosed(mesh, closed, byMost(closed), notes)), "outwards as the others do");
+  note(turn(mesh, open, byMost(open)), "the same way as their neighbours");
 }
 
 /// Leaves out pairs of triangles with the same corners that face each other's backs: where parts touch.
@@ -391,42 +366,79 @@ void dropShared(TriangleMesh& mesh, std::vector<std::string>& notes) {
   notes.push_back(std::to_string(dropped.size()) + " triangles where parts touch were left out");
 }
 
+/// Gives each part corners of its own.
+void separate(TriangleMesh& mesh, const std::vector<Part>& parts) {
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  // The part that a corner was last met in, and its number there.
+  std::vector<std::uint32_t> met(mesh.vertices.size(), kNone), own(mesh.vertices.size());
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    for (const std::uint32_t triangle : parts[part].triangles) {
+      for (std::uint32_t& corner : mesh.triangles[triangle]) {
+        const std::uint32_t shared = corner;
+        if (met[shared] != part) {
+          own[shared] = met[shared] == kNone ? shared : static_cast<std::uint32_t>(mesh.vertices.size());
+          const Vec3f place = mesh.vertices[shared];
+          if (met[shared] != kNone) mesh.vertices.push_back(place);
+          met[shared] = part;
+        }
+        corner = own[shared];
+      }
+    }
+  }
+}
+
 }  // namespace
 
-bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes) {
-  weld(mesh);
-  weldNear(mesh, notes);
-  dropFlat(mesh, notes);
-  dropVertices(mesh);
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+RepairedMesh repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes) {
+  weldMesh(mesh, notes);
   std::vector<Triangle> all = std::move(mesh.triangles);
   mesh.triangles = withoutRepeated(all);
   if (mesh.triangles.empty()) throw InputError(place, "expected triangles with an area, found none");
+  RepairedMesh result;
   Edges edges(mesh);
-  const Edges::Found odd = edges.odd(mesh);
+  Edges::Found odd = edges.odd(mesh);
+  bool shared = false;
   if (odd.count > 0) {
     // Parts that touch have triangles with the same corners, one of each.
     std::swap(mesh.triangles, all);
-    edges = Edges(mesh);
-    if (edges.odd(mesh).count > 0)
-      throw InputError(place,
-                       "expected edges of two triangles, or of two for each part that touches there (a "
-                       "manifold), found " +
-                           counted(odd.count, "triangle", "triangles") +
-                           " more on edges that have two already, the first at " + at(odd.middle));
-  } else {
-    noteRepeated(all.size() - mesh.triangles.size(), notes);
+    const Edges touching(mesh);
+    shared = touching.odd(mesh).count == 0;
+    if (shared) {
+      edges = touching;
+      odd = {};
+    } else {
+      std::swap(mesh.triangles, all);
+    }
+  }
+  if (!shared) noteRepeated(all.size() - mesh.triangles.size(), notes);
+  if (odd.count > 0) {
+    edges.cutOdd(mesh.triangles.size());
+    result.branching = {place,
+                        "expected edges of two triangles, or of two for each part that touches there (a "
+                        "manifold), found " +
+                            counted(odd.count, "edge", "edges") + " of three or more, the first at " +
+                            at(odd.middle) + "; a wall of shape \"mesh\" takes them as sheets that meet"};
+    notes.push_back("sheets meet at " + counted(odd.count, "edge", "edges") +
+                    " of three or more triangles, the first at " + at(odd.middle));
   }
   std::vector<Part> parts = connectedParts(mesh, edges, place);
-  const Edges::Found open = edges.open(mesh);
-  orient(mesh, parts, open.count == 0, notes);
-  if (odd.count > 0) dropShared(mesh, notes);
-  if (open.count > 0)
+  const auto open =
+      std::stable_partition(parts.begin(), parts.end(), [](const Part& part) { return part.closed; });
+  orient(mesh, {parts.begin(), open}, {open, parts.end()}, notes);
+  if (shared) dropShared(mesh, notes);
+  if (odd.count > 0) separate(mesh, parts);
+  result.closed = open == parts.end();
+  if (const Edges::Found rim = edges.open(mesh); rim.count > 0)
     notes.push_back(
-        "the mesh is open: " + counted(open.count, "edge has", "edges have") +
-        " a triangle on one side only, the first near " + at(open.middle) +
+        "the mesh is open: " + counted(rim.count, "edge has", "edges have") +
+        " a triangle on one side only, the first near " + at(rim.middle) +
         "; its triangles as a wall end there and have fluid on both sides, a SLIM surface fitted to it knows "
         "inside and outside near it only");
-  return open.count == 0;
+  return result;
 }
 
 }  // namespace migiwa

@@ -211,7 +211,9 @@ ImportedShape importShape(const fs::path& file) {
   Raw raw = readRaw(file, origin, shape.notes);
   if (!raw.mesh.triangles.empty()) {
     shape.mesh = std::move(raw.mesh);
-    shape.closed = repairMesh(shape.mesh, file.string(), shape.notes);
+    RepairedMesh repaired = repairMesh(shape.mesh, file.string(), shape.notes);
+    shape.closed = repaired.closed;
+    shape.branching = std::move(repaired.branching);
     moveBack(shape, origin);
     return shape;
   }
@@ -229,6 +231,7 @@ ImportedShape importShape(const fs::path& file) {
 
 OrientedPoints fitPoints(const ImportedShape& shape, int nodes) {
   if (!shape.isMesh()) return shape.cloud;
+  if (shape.branching) throw InputError(std::vector{*shape.branching});
   return {samplePoints(shape.mesh, sampleCount(shape.mesh, nodes), 1), shape.closed};
 }
 

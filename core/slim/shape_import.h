@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/messages.h"
 #include "core/slim/points.h"
 
 namespace migiwa {
@@ -20,6 +22,8 @@ struct ImportedShape {
   TriangleMesh mesh;     ///< no triangles: the file holds points
   OrientedPoints cloud;  ///< no points: the file holds a mesh
   bool closed = true;    ///< encloses a solid
+  /// Where more than two sheets meet at an edge: a wall is made of them, a SLIM surface is not.
+  std::optional<Fault> branching;
   /// The mesh's vertices, or the points, in double where floats do not hold what the file says: far from the
   /// origin. Empty elsewhere.
   std::vector<Vec3d> exact;
@@ -33,7 +37,8 @@ struct ImportedShape {
 /// told inside from outside.
 ImportedShape importShape(const std::filesystem::path& file);
 
-/// The points that a SLIM surface of about so many nodes (0: not known) is fitted to.
+/// The points that a SLIM surface of about so many nodes (0: not known) is fitted to. Throws InputError for
+/// sheets of which more than two meet at an edge.
 OrientedPoints fitPoints(const ImportedShape& shape, int nodes);
 
 // Makes points with normals as files hold them into points whose normals agree.
@@ -47,13 +52,25 @@ bool repairCloud(std::vector<OrientedPoint>& points, const std::string& place,
 
 // Makes a mesh as files hold them into one that has an inside and an outside.
 
-/// Welds vertices within a millionth of the mesh's diagonal, drops triangles that are degenerate, there twice
-/// or shared by two parts that touch, and turns triangles so that the outermost parts face outwards; a closed
-/// part within another keeps how it faces relative to that one: inwards is the wall of a hollow. Adds a
-/// sentence to `notes` for each kind of repair, and for an open mesh. Returns whether the mesh is closed.
-/// Throws InputError at `place` for no triangles, edges at which triangles are no pairs and
-/// surfaces with one side only.
-bool repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
+/// Such as `1 corner was` or `2 corners were`, for notes.
+std::string counted(std::size_t count, const std::string& one, const std::string& many);
+
+/// Makes one of corners at the same place, or within a millionth of the mesh's diagonal; leaves out triangles
+/// that lose a corner by that, and corners of none. Adds a sentence to `notes` where anything was changed.
+void weldMesh(TriangleMesh& mesh, std::vector<std::string>& notes);
+
+struct RepairedMesh {
+  bool closed = true;
+  std::optional<Fault> branching{};  ///< of ImportedShape
+};
+
+/// Welds corners, drops triangles that are degenerate, there twice or shared by two parts that touch, and
+/// turns triangles so that the outermost closed parts face outwards; a
+/// closed part within another keeps how it faces relative to that one: inwards is the wall of a hollow. Where
+/// an odd number of sheets meet at an edge, those that end elsewhere, too, become parts that end there, with
+/// vertices of their own. Adds a sentence to `notes` for each kind of repair, and for an open mesh.
+/// Throws InputError at `place` for no triangles and surfaces with one side only.
+RepairedMesh repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
 
 // Normals for points that have none, or none that agree: planes through neighbours, whose sides are made to
 // agree along the spanning tree that turns least (Hoppe, DeRose, Duchamp, McDonald and Stuetzle 1992, Surface

@@ -84,7 +84,7 @@ std::vector<Override> StudyPlan::overrides(std::size_t run) const {
 std::string runFingerprint(const Scene& scene, double until) {
   Json identity = sceneIdentity(scene);
   identity["until"] = until;
-  const std::string text = identity.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = compactJson(identity);
   return hexDigits(checksum(kEmptyChecksum, text.data(), text.size()));
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <mutex>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -18,6 +16,18 @@ namespace migiwa {
 
 namespace {
 
+/// What a prepared mesh is made from.
+struct MeshKey {
+  FileName file;
+  Transform transform;
+  bool fluidInside;
+
+  bool operator==(const MeshKey& other) const {
+    return file.path == other.file.path && file.identity == other.file.identity &&
+           transform == other.transform && fluidInside == other.fluidInside;
+  }
+};
+
 /// What a mesh file gives, and what its import had to say.
 struct PreparedMesh {
   std::shared_ptr<const TriangleTree> tree;  ///< null: the file holds points
@@ -25,7 +35,8 @@ struct PreparedMesh {
   std::vector<std::string> notes;
 };
 
-PreparedMesh prepareMesh(const FileName& file, const Transform& transform, bool fluidInside) {
+PreparedMesh prepareMesh(const MeshKey& key) {
+  const auto& [file, transform, fluidInside] = key;
   const Activity activity("preparing the wall of " + file.path.filename().string());
   ImportedShape shape = importShape(file.path);
   requireUnchanged(file.path, file.identity);
@@ -41,28 +52,10 @@ PreparedMesh prepareMesh(const FileName& file, const Transform& transform, bool 
   return result;
 }
 
-/// The same for a file that was read a moment ago: comparisons and restarts read a scene again and again.
-PreparedMesh preparedMesh(const FileName& file, const Transform& transform, bool fluidInside) {
-  struct Kept {
-    FileIdentity content;
-    std::filesystem::path path;
-    Transform transform;
-    bool fluidInside;
-    PreparedMesh mesh;
-  };
+PreparedMesh preparedMesh(const MeshKey& key) {
   constexpr std::size_t kMostKept = 4;
-  static std::mutex mutex;
-  static std::deque<Kept> kept;
-  const FileIdentity content = file.identity;
-  const std::lock_guard lock(mutex);
-  if (!CacheBypass::active())
-    for (const Kept& known : kept)
-      if (known.path == file.path && known.content == content && known.transform == transform &&
-          known.fluidInside == fluidInside)
-        return known.mesh;
-  kept.push_front({content, file.path, transform, fluidInside, prepareMesh(file, transform, fluidInside)});
-  if (kept.size() > kMostKept) kept.pop_back();
-  return kept.front().mesh;
+  static KeptResults<MeshKey, PreparedMesh> kept(kMostKept);
+  return kept.get(key, prepareMesh);
 }
 
 }  // namespace
@@ -171,7 +164,7 @@ void MeshSurface::describe(FieldVisitor& visitor) {
 void MeshSurface::prepare(FieldVisitor& visitor) {
   const bool inside = fluid_ == Fluid::inside;
   try {
-    const PreparedMesh mesh = preparedMesh(file_, transform_, inside);
+    const PreparedMesh mesh = preparedMesh({file_, transform_, inside});
     std::vector<std::string> notes = mesh.notes;
     if (mesh.box) {
       shape_ = std::make_shared<const Box>(boxWall(*mesh.box, inside));

@@ -1,12 +1,11 @@
 #include <cstdio>
-#include <deque>
 #include <fstream>
-#include <mutex>
 #include <optional>
 #include <sstream>
 
 #include "core/base/files.h"
 #include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/slim/file.h"
 #include "core/slim/model.h"
 #include "core/walls/slim_wall.h"
@@ -65,7 +64,8 @@ SlimFit fitOf(const SlimSource& source, ThreadPool& pool) {
     for (const OrientedPoint& point : points.points) bounds.include(point.position.cast<double>());
     options.tolerance = defaultSlimTolerance(bounds);
   }
-  fit.data.nodes = fitSlim(points, options, pool);
+  Activity activity("fitting a SLIM surface to " + std::to_string(points.points.size()) + " points");
+  fit.data.nodes = fitSlim(points, options, pool, [&](double part) { activity.reach(part); });
   fit.data.degree = source.degree;
   fit.data.closed = points.closed;
   // A fit that cannot be kept costs the next start some seconds, no more.
@@ -94,11 +94,6 @@ std::shared_ptr<const SlimWallData> prepare(const SlimSource& source) {
   result->thinnestPart = slimThickness(*result->model);
   return result;
 }
-
-struct Kept {
-  SlimSource source;
-  std::shared_ptr<const SlimWallData> data;
-};
 
 }  // namespace
 
@@ -133,19 +128,10 @@ std::optional<double> slimFitError(const SlimSource& source, const SlimModel& mo
 }
 
 std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& asked) {
-  // The only state that outlives a scene: comparisons and restarts read the same scene again and again, and a
-  // fit takes seconds. Fits do not depend on when and where they are made, so nobody sees a difference.
-  static std::mutex mutex;
-  static std::deque<Kept> kept;
+  static KeptResults<SlimSource, std::shared_ptr<const SlimWallData>> kept(kMostKept);
   SlimSource source = asked;
   source.identity = asked.content();
-  const std::lock_guard lock(mutex);
-  if (!CacheBypass::active())
-    for (const Kept& known : kept)
-      if (known.source == source) return known.data;
-  kept.push_front({source, prepare(source)});
-  if (kept.size() > kMostKept) kept.pop_back();
-  return kept.front().data;
+  return kept.get(source, prepare);
 }
 
 namespace fs = std::filesystem;

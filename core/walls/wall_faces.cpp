@@ -64,6 +64,7 @@ class FaceSplitter {
         fluidInside_(fluidInside),
         place_(place),
         open_(openFaces(mesh)),
+        allOpen_(std::find(open_.begin(), open_.end(), false) == open_.end()),
         tree_(trianglesOf(mesh)) {
     const Bounds bounds = mesh.bounds();
     touching_ = kTouching * bounds.size().maxCoeff();
@@ -287,7 +288,8 @@ class FaceSplitter {
   Side sideOf(std::uint32_t k, const Vec3d& middle) const {
     const Vec3d step = 4 * touching_ * planes_[k].normal;
     const bool before = winding(middle + step) >= 1, behind = winding(middle - step) >= 1;
-    if (open_[k]) return before == behind && before == fluidInside_ ? Side::sheet : Side::none;
+    // Of sheets alone none encloses anything: all of them are wet.
+    if (open_[k]) return before == behind && (before == fluidInside_ || allOpen_) ? Side::sheet : Side::none;
     if (before == behind) return Side::none;
     return behind ? Side::outwards : Side::inwards;
   }
@@ -346,6 +348,7 @@ class FaceSplitter {
   bool fluidInside_;
   const std::string& place_;
   std::vector<bool> open_;
+  bool allOpen_;
   TriangleTree tree_;  ///< over the mesh's faces
   double touching_ = 0;
   std::vector<Corners> faces_;

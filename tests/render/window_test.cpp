@@ -1,7 +1,9 @@
 // A real window, driven by real keys and clicks: needs a display, such as xvfb-run's.
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <future>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -11,6 +13,8 @@
 #include "app/session/session.h"
 #include "app/session/ui_state.h"
 #include "app/viewer/viewer.h"
+#include "core/base/messages.h"
+#include "core/base/progress.h"
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "tests/render/test_scene.h"
@@ -138,7 +142,7 @@ std::vector<Seen> windowAfter(const std::vector<Act>& acts, WindowOptions option
     seen.emplace_back(drawn);
     if (seen.size() == acts.size()) hands.act("close");
   };
-  runWindow(smallScene(), options);
+  runWindow("small", smallScene, options);
   EXPECT_EQ(seen.size(), acts.size()) << "the window never showed what act " << seen.size() << " does";
   return seen;
 }
@@ -172,7 +176,7 @@ TEST(WindowTest, LoopDrawsSoManyFramesAndCloses) {
   options.playing = false;
   std::vector<Seen> seen;
   options.drawn = [&](const DrawnFrame& drawn) { seen.emplace_back(drawn); };
-  runWindow(smallScene(), options);
+  runWindow("small", smallScene, options);
   ASSERT_EQ(seen.size(), 20U);
   const Simulation start(smallScene(), 1);
   for (const Seen& frame : seen) {
@@ -273,6 +277,44 @@ TEST(WindowTest, KeysAndButtonsChangeWhatIsShownAndComputed) {
     EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.stateHash, same.stateHash());
     EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.handling, "no correction");
   }
+}
+
+/// Titles of the windows that there are.
+std::string titles() {
+  std::FILE* const pipe = popen(
+      "/usr/bin/python3 -c 'from Xlib import display\n"
+      "for w in display.Display().screen().root.query_tree().children: print(w.get_wm_name())'",
+      "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  pclose(pipe);
+  return text;
+}
+
+TEST(WindowTest, SaysWhatIsDoneWhileTheSceneIsPrepared) {
+  bool said = false;
+  const auto read = [&] {
+    Activity activity("fitting five points");
+    activity.reach(0.45);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!said && std::chrono::steady_clock::now() < until)
+      said = titles().find("fitting five points: 45 % - small - Migiwa") != std::string::npos;
+    return smallScene();
+  };
+  std::string after;
+  WindowOptions options;
+  options.frames = 3;
+  options.drawn = [&](const DrawnFrame&) { after = titles(); };
+  runWindow("small", read, options);
+  EXPECT_TRUE(said);
+  EXPECT_EQ(after.find("fitting"), std::string::npos) << after;
+  EXPECT_NE(after.find(" - Migiwa"), std::string::npos) << after;
+}
+
+/// As where there is no window.
+TEST(WindowTest, OpensNoWindowOnASceneWithFaults) {
+  const auto read = []() -> Scene { throw InputError("scene.json", "expected one, found none"); };
+  EXPECT_THROW(runWindow("small", read, {}), InputError);
 }
 
 TEST(WindowTest, SizeIsAskedForInPixels) {

@@ -155,7 +155,7 @@ TEST(MeshUnion, CellsAreFilledWhereTheWindingNumberSays) {
     SCOPED_TRACE(seed);
     Union shape = randomUnion(seed);
     std::vector<std::string> notes;
-    ASSERT_TRUE(repairMesh(shape.mesh, "union", notes));
+    ASSERT_TRUE(repairMesh(shape.mesh, "union", notes).closed);
     std::vector<Vec3d> centers;
     fillMesh(shape.mesh, kSpacing, centers);
     ASSERT_LE(static_cast<double>(centers.size()), MeshSource(shape.mesh).count(kSpacing));

@@ -173,11 +173,31 @@ TEST_F(ShapeImport, RefusesWhatIsNoSurface) {
             "apt-get install glmark2-data)");
 }
 
-TEST_F(ShapeImport, RefusesEdgesOfThreeTriangles) {
-  EXPECT_EQ(
-      faultOf(write("fin.obj", kCubeVertices + "v 3 0 0\n" + kCubeFaces + "f 1 2 9\n")),
-      "expected edges of two triangles, or of two for each part that touches there (a manifold), found 1 "
-      "triangle more on edges that have two already, the first at (0.5, 0, 0)");
+/// A fin on a cube: the cube stays whole, and a wall has both; no polynomials pass through the edge.
+TEST_F(ShapeImport, TakesAFinOffTheSolidThatItStandsOn) {
+  for (const bool finFirst : {false, true}) {
+    const std::string fin = "f 1 2 9\n", points = kCubeVertices + "v 3 0 0\nv 3 1 0\n";
+    const ImportedShape shape =
+        importShape(write("fin.obj", points + (finFirst ? fin + kCubeFaces : kCubeFaces + fin)));
+    EXPECT_FALSE(shape.closed);
+    EXPECT_NEAR(volumeOf(shape.mesh), 1, 1e-6);
+    EXPECT_EQ(shape.mesh.vertices.size(), 8U + 3U);
+    ASSERT_EQ(shape.notes.size(), 2U);
+    EXPECT_EQ(shape.notes[0], "sheets meet at 1 edge of three or more triangles, the first at (0.5, 0, 0)");
+    EXPECT_THROW(fitPoints(shape, 100), InputError);
+  }
+}
+
+/// Of parts that are open nobody knows which way round they are meant; a closed one has an outside.
+TEST_F(ShapeImport, TurnsAClosedPartBesideAnOpenOneOutwards) {
+  std::string inwards;
+  for (const char* face : {"1 2 3 4", "8 7 6 5", "5 6 2 1", "6 7 3 2", "7 8 4 3", "8 5 1 4"})
+    inwards += std::string("f ") + face + "\n";
+  const std::string sheet = "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 9 10 11\n";
+  const double volume = volumeOf(importShape(write("alone.obj", kCubeVertices + inwards)).mesh);
+  ASSERT_NEAR(volume, 1, 1e-6);
+  EXPECT_NEAR(volumeOf(importShape(write("both.obj", kCubeVertices + sheet + kCubeFaces)).mesh), 1, 1e-6);
+  EXPECT_NEAR(volumeOf(importShape(write("both.obj", kCubeVertices + sheet + inwards)).mesh), 1, 1e-6);
 }
 
 TEST_F(ShapeImport, RefusesAMoebiusStrip) {

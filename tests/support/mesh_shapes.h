@@ -1,7 +1,10 @@
 // Closed meshes put together in code.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -126,6 +129,21 @@ inline double windingNumber(const TriangleMesh& mesh, const Vec3d& p) {
     sum += 2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
   }
   return sum / (4 * std::numbers::pi);
+}
+
+/// Whether the way from one point to another meets a triangle of the mesh, by the signs of volumes.
+inline bool meets(const TriangleMesh& mesh, const Vec3d& from, const Vec3d& to) {
+  const auto positive = [](const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s) {
+    return (q - p).cross(r - p).dot(s - p) > 0;
+  };
+  return std::any_of(
+      mesh.triangles.begin(), mesh.triangles.end(), [&](const std::array<std::uint32_t, 3>& t) {
+        const Vec3d a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>(),
+                    c = mesh.vertices[t[2]].cast<double>();
+        if (positive(a, b, c, from) == positive(a, b, c, to)) return false;
+        const bool side = positive(from, to, a, b);
+        return side == positive(from, to, b, c) && side == positive(from, to, c, a);
+      });
 }
 
 /// By how many cells, quarters below 1, a lattice with a cell at `center` lies below one with a cell at

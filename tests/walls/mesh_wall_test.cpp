@@ -1,6 +1,7 @@
 // Walls of triangles against brute force, winding numbers and the shapes that they stand for.
 #include "core/walls/mesh_wall.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "core/gamma/baked.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene_file.h"
+#include "core/slim/shape_import.h"
 #include "core/walls/boundary.h"
 #include "core/walls/shapes.h"
 #include "tests/support/mesh_shapes.h"
@@ -246,6 +248,96 @@ TEST(TriangleWall, ASheetHasFluidOnBothSidesAndEndsAtItsRim) {
   EXPECT_FALSE(wall.crosses({0.6F, 0.1F, 0.2F}, {0.6F, -0.3F, 0.2F}, normal, entry));
   EXPECT_EQ(wall.thickness(), 0);
   EXPECT_FALSE(wall.passable(0.2F));
+}
+
+/// Squares of a grid of 3^3 cells about the origin, one in three: sheets that meet in all ways, three or four
+/// at an edge too, with corners that they share.
+TriangleMesh randomSheets(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<TriangleMesh> squares;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 4 * 3 * 3; ++k) {
+      if (random() % 3 != 0) continue;
+      Vec3d corner(k % 4 - 1.5, k / 4 % 3 - 1.5, k / 12 - 1.5), a = Vec3d::UnitY(), b = Vec3d::UnitZ();
+      const auto turned = [axis](const Vec3d& v) {
+        return axis == 0 ? v : axis == 1 ? Vec3d(v.z(), v.x(), v.y()) : Vec3d(v.y(), v.z(), v.x());
+      };
+      if (random() % 2 == 0) std::swap(a, b);
+      squares.push_back(sheetMesh(turned(corner), turned(a), turned(b)));
+    }
+  }
+  return together(squares);
+}
+
+TEST(TriangleWall, NothingPassesSheetsThatMeetAtEdges) {
+  int passes = 0, crossings = 0, walls = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const TriangleMesh mesh = randomSheets(seed);
+    TriangleMesh repaired = mesh;
+    std::vector<std::string> notes;
+    std::vector<WallTriangle> faces;
+    try {
+      repairMesh(repaired, "test", notes);
+      faces = wallFaces(repaired, seed % 2 == 0, "test");
+    } catch (const InputError&) {
+      continue;  // one-sided
+    }
+    // Where sheets enclose a cell, it is a solid, and what is in it no wall.
+    if (std::any_of(faces.begin(), faces.end(), [](const WallTriangle& face) { return !face.sheet; }))
+      continue;
+    ++walls;
+    const TriangleWall wall(std::make_shared<const TriangleTree>(std::move(faces)), false, 0.2F);
+    const std::vector<Vec3f> ends = randomPoints(seed, 2000);
+    for (std::size_t k = 0; k + 1 < ends.size(); k += 2) {
+      const bool met = testing::meets(mesh, ends[k].cast<double>(), ends[k + 1].cast<double>());
+      Vec3f normal;
+      float entry = 0;
+      ASSERT_EQ(wall.crosses(ends[k], ends[k + 1], normal, entry), met)
+          << "seed " << seed << " from " << ends[k].transpose() << " to " << ends[k + 1].transpose();
+      ASSERT_EQ(wall.hides(ends[k], ends[k + 1]), met);
+      ++(met ? crossings : passes);
+    }
+  }
+  EXPECT_GT(walls, 40);
+  EXPECT_GT(passes, 1000);
+  EXPECT_GT(crossings, 10000);
+}
+
+/// A box with a wall across it, and one that stands on it: where it ends both of its sides are wet, and the
+/// box is as solid as without it.
+TEST(TriangleWall, AFinOnASolidIsWetOnBothSides) {
+  TriangleMesh mesh = blockMesh({0, 0, 0}, {1, 1, 1});
+  mesh.vertices.emplace_back(0, 2, 0);
+  mesh.vertices.emplace_back(1, 2, 0);
+  mesh.triangles.push_back({2, 3, 9});
+  mesh.triangles.push_back({2, 9, 8});
+  std::vector<std::string> notes;
+  ASSERT_FALSE(repairMesh(mesh, "test", notes).closed);
+  const TriangleWall wall = wallOf(mesh, false, 0.2F);
+  Vec3f normal;
+  EXPECT_FLOAT_EQ(wall.distance({0.5F, 0.7F, 0.5F}, normal), -0.3F);
+  EXPECT_FLOAT_EQ(wall.distance({0.5F, 1.7F, 0.1F}, normal), 0.1F);
+  EXPECT_FLOAT_EQ(wall.distance({0.5F, 1.7F, -0.1F}, normal), 0.1F);
+  float entry = 0;
+  EXPECT_TRUE(wall.crosses({0.5F, 1.7F, 0.1F}, {0.5F, 1.7F, -0.1F}, normal, entry));
+  EXPECT_FALSE(wall.crosses({0.5F, 2.1F, 0.1F}, {0.5F, 2.1F, -0.1F}, normal, entry));
+}
+
+TEST(TriangleWall, AWallAcrossABoxPartsItAndHoldsOnBothSides) {
+  TriangleMesh mesh = together({blockMesh({0, 0, 0}, {1, 1, 1}), blockMesh({1, 0, 0}, {2, 1, 1})});
+  // The square between the two once.
+  mesh.triangles.erase(mesh.triangles.begin() + 10, mesh.triangles.begin() + 12);
+  std::vector<std::string> notes;
+  ASSERT_FALSE(repairMesh(mesh, "test", notes).closed);
+  const TriangleWall wall = wallOf(mesh, true, 0.2F);
+  Vec3f normal;
+  float entry = 0;
+  for (const float y : {0.01F, 0.5F, 0.99F}) {
+    EXPECT_TRUE(wall.crosses({0.9F, y, 0.5F}, {1.1F, y, 0.5F}, normal, entry));
+    EXPECT_TRUE(wall.crosses({1.1F, y, 0.5F}, {0.9F, y, 0.5F}, normal, entry));
+    EXPECT_TRUE(wall.crosses({0.1F, y, 0.5F}, {-0.1F, y, 0.5F}, normal, entry));
+    EXPECT_TRUE(wall.crosses({1.9F, y, 0.5F}, {2.1F, y, 0.5F}, normal, entry));
+  }
 }
 
 TEST(TriangleWall, ProjectionEndsAtTheMarginOutsideOfSharpEdgesAndInsideOfCorners) {
