@@ -1,8 +1,9 @@
 // Picks the method at every point by the walls in reach there:
-//   planes at right angles, or one alone   product      closed forms
+//   planes at right angles, or one alone    product   closed forms
 //   planes at other angles, the rims of
-//   thin walls                             directions   where two planes meet: cheaper and closer than the
-//   copula curved walls                           baked, if the grid is soon made, else directions
+//   thin walls, meshes                      facets    sums over edges
+//   curved walls, meshes that are nowhere
+//   thin                                    baked, if the grid is soon made, else directions
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +18,8 @@ namespace migiwa {
 
 namespace {
 
-enum Pick : std::size_t { kProduct, kDirections };
+enum Pick : std::size_t { kProduct, kFacets, kCurved };
+constexpr std::size_t kPicks = 3;
 
 class AutoGamma final : public GammaMethod {
  public:
@@ -25,14 +27,14 @@ class AutoGamma final : public GammaMethod {
       : boundary_(context.boundary),
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
-        methods_{makeProductGamma(context), nullptr},
+        methods_{makeProductGamma(context), makeFacetsGamma(context), nullptr},
         curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
-                             [](const auto& surface) { return surface->planar(); })) {
+                             [](const auto& surface) { return surface->planar() || surface->faceted(); })) {
     if (std::unique_ptr<GridGamma> grid = withGrid ? makeAboutCurves(context) : nullptr) {
       grid_ = grid.get();
-      methods_[kDirections] = std::move(grid);
+      methods_[kCurved] = std::move(grid);
     } else {
-      methods_[kDirections] = makeDirectionsGamma(fine(context));
+      methods_[kCurved] = makeDirectionsGamma(fine(context));
     }
   }
 
@@ -42,18 +44,18 @@ class AutoGamma final : public GammaMethod {
   }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
-    if (curved_) return methods_[kDirections]->evaluate(points, out);
+    if (curved_) return methods_[kCurved]->evaluate(points, out);
     if (flat_) {
       methods_[kProduct]->evaluate(points, out);
       if (flat_->rightAngled()) return;
     }
     // Gathered by method, so that each has a batch.
-    std::array<std::vector<std::size_t>, 2> picked;
+    std::array<std::vector<std::size_t>, kPicks> picked;
     HalfSpaces walls;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3f p = points[i].xyz();
       if (flat_) {
-        if (flat_->obliqueAt(p)) picked[kDirections].push_back(i);
+        if (flat_->obliqueAt(p)) picked[kFacets].push_back(i);
         continue;
       }
       out[i] = GammaSample{};
@@ -68,41 +70,41 @@ class AutoGamma final : public GammaMethod {
       samples.clear();
       for (const std::size_t i : picked[method]) {
         at.push_back(points[i]);
-        samples.push_back(out[i]);
+        samples.emplace_back().distance = out[i].distance;
       }
-      if (method == kDirections && grid_ != nullptr) {
-        grid_->evaluateMeasured(at, samples);
-      } else {
-        methods_[method]->evaluate(at, samples);
-      }
+      methods_[method]->evaluateMeasured(at, samples);
       for (std::size_t k = 0; k < at.size(); ++k) out[picked[method][k]] = samples[k];
     }
   }
 
   GammaChoice choice() const override {
     const auto& surfaces = boundary_.surfaces();
-    const bool planar =
-        std::all_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s->planar(); });
-    if (!planar) {
+    const auto any = [&](const auto& of) { return std::any_of(surfaces.begin(), surfaces.end(), of); };
+    const bool planar = any([](const auto& s) { return s->planar(); });
+    const bool meshes = any([](const auto& s) { return s->faceted() && !s->planar(); });
+    if (any([](const auto& s) { return !s->planar() && !s->faceted(); }) || (meshes && grid_ != nullptr)) {
       const std::string curved = grid_ != nullptr ? "baked" : "directions";
       const std::string why =
           grid_ != nullptr
-              ? "; curved walls: " + methods_[kDirections]->choice().reason
+              ? "; curved walls: " + methods_[kCurved]->choice().reason
               : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
       if (curved_) return {curved, "all walls are curved" + why};
-      return {"product, " + curved, "by the walls in reach of each particle" + why};
+      return {(planar ? "product, facets, " : "facets, ") + curved,
+              "by the walls in reach of each particle" + why};
     }
-    if (std::any_of(surfaces.begin(), surfaces.end(),
-                    [this](const auto& s) { return s->thickness() < support_; }))
+    if (meshes)
+      return {planar ? "product, facets" : "facets",
+              "by the walls in reach of each particle: planes, and meshes"};
+    if (any([this](const auto& s) { return s->thickness() < support_; }))
       return {
-          "product, directions",
+          "product, facets",
           "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
           "radius"};
     const bool turn = std::any_of(boundary_.moving().begin(), boundary_.moving().end(),
                                   [](const auto& wall) { return wall->motion().turns; });
-    if (turn) return {"product, directions", "by the walls in reach of each particle: planes, and some turn"};
+    if (turn) return {"product, facets", "by the walls in reach of each particle: planes, and some turn"};
     if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
-    return {"product, directions", "by the walls in reach of each particle: planes at various angles"};
+    return {"product, facets", "by the walls in reach of each particle: planes at various angles"};
   }
 
  private:
@@ -148,14 +150,16 @@ class AutoGamma final : public GammaMethod {
   }
 
   Pick pick(const Vec3f& p, HalfSpaces& walls) const {
-    if (grid_ != nullptr && grid_->covers(p)) return kDirections;
+    if (grid_ != nullptr && grid_->covers(p)) return kCurved;
+    bool meshes = false;
     for (const Surface* surface : boundary_.near(p, support_)) {
       if (surface->planar()) continue;
       Vec3f normal;
-      if (surface->distance(p, normal) < support_) return kDirections;
+      if (surface->distance(p, normal) >= support_) continue;
+      if (!surface->faceted()) return kCurved;
+      meshes = true;
     }
-    walls.collect(boundary_, p, support_);
-    if (walls.thinRim) return kDirections;
+    if (meshes || walls.collect(boundary_, p, support_, true)) return kFacets;
     Pick most = ofPlanes(walls.tanks);
     for (const std::vector<HalfSpace>& block : walls.blocks) most = std::max(most, ofPlanes(block));
     return most;
@@ -164,14 +168,14 @@ class AutoGamma final : public GammaMethod {
   static Pick ofPlanes(std::span<const HalfSpace> planes) {
     for (std::size_t k = 0; k < planes.size(); ++k)
       for (std::size_t l = 0; l < k; ++l)
-        if (!acrossEachOther(planes[k].normal, planes[l].normal)) return kDirections;
+        if (!acrossEachOther(planes[k].normal, planes[l].normal)) return kFacets;
     return kProduct;
   }
 
   const Boundary& boundary_;
   float support_;
   std::optional<FlatPlanes> flat_;
-  std::unique_ptr<GammaMethod> methods_[2];
+  std::unique_ptr<GammaMethod> methods_[kPicks];
   const GridGamma* grid_ = nullptr;  ///< the last, if it is one
   bool curved_;                      ///< all walls are
 };

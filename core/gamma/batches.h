@@ -1,7 +1,9 @@
 // Gamma of many points at once, with the vector instructions of the processor at hand.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "core/gamma/gamma_method.h"
 #include "core/gamma/half_spaces.h"
@@ -39,5 +41,22 @@ void addRays(KernelType kernel, const Directions& directions, std::span<const fl
 /// kMostRayPlanes of them.
 inline constexpr std::size_t kMostRayPlanes = 64;
 RaySums beyondFirstPlane(KernelType kernel, const Directions& directions, std::span<const HalfSpace> planes);
+
+// Integrals along the edges of flat polygons, which are what the polygons' own integrals are made of
+// (facets.cpp has the equations), with the vector instructions of the processor at hand.
+
+/// Lengths over the support radius; an edge ends where it leaves the support.
+struct PolygonEdge {
+  float height;    ///< of the point over the polygon's plane, >= 0
+  float inside;    ///< distance of the point's foot to the edge's line, positive inside
+  float from, to;  ///< ends along the edge, from the point of its line that is nearest
+};
+struct EdgeIntegrals {
+  float flux;            ///< integral of height Phi(r) over the angle about the foot
+  float area, pairArea;  ///< integral of K(r) over the angle
+  float unused;
+};
+/// Fills one result for each edge. Both are filled up to whole vectors.
+void integrate(KernelType kernel, std::vector<PolygonEdge>& edges, std::vector<EdgeIntegrals>& results);
 
 }  // namespace migiwa

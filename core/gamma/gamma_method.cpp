@@ -18,10 +18,15 @@ struct Entry {
 };
 
 constexpr std::array kMethods{
-    Entry{"auto", makeAutoGamma},       Entry{"product", makeProductGamma},
-    Entry{"copula", makeCopulaGamma},   Entry{"directions", makeDirectionsGamma},
-    Entry{"baked", makeBakedGamma},     Entry{"mean", makeMeanGamma},
-    Entry{"nearest", makeNearestGamma}, Entry{"monte_carlo", makeMonteCarloGamma},
+    Entry{"auto", makeAutoGamma},
+    Entry{"product", makeProductGamma},
+    Entry{"copula", makeCopulaGamma},
+    Entry{"directions", makeDirectionsGamma},
+    Entry{"facets", makeFacetsGamma},
+    Entry{"baked", makeBakedGamma},
+    Entry{"mean", makeMeanGamma},
+    Entry{"nearest", makeNearestGamma},
+    Entry{"monte_carlo", makeMonteCarloGamma},
 };
 /// Those behind these are too slow for a step.
 constexpr std::size_t kStepped = kMethods.size() - 1;

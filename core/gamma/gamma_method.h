@@ -53,6 +53,10 @@ class GammaMethod {
   virtual void wallsMoved() {}
   /// Fills out[i] for points[i] (xyz in m). Thread-safe.
   virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
+  /// evaluate() for samples that hold their distances already, and otherwise nothing.
+  virtual void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const {
+    evaluate(points, out);
+  }
 
  private:
   WallDensity form_;
@@ -105,8 +109,6 @@ class GridGamma : public GammaMethod {
  public:
   /// Whether gamma at p comes from the grid.
   virtual bool covers(const Vec3f& p) const = 0;
-  /// evaluate() for samples that hold their distances already, and otherwise nothing.
-  virtual void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const = 0;
 };
 
 /// gamma of the closest wall alone, as if it were an infinite plane.
@@ -119,6 +121,8 @@ std::unique_ptr<GammaMethod> makeProductGamma(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeCopulaGamma(const GammaContext& context);
 /// The mean over fixed directions of the kernel's mass up to the first wall; any shape.
 std::unique_ptr<GammaMethod> makeDirectionsGamma(const GammaContext& context);
+/// Sums over the edges of flat facets, exact but for rounding; of curved walls the tangent planes.
+std::unique_ptr<GammaMethod> makeFacetsGamma(const GammaContext& context);
 /// A grid of gamma about walls that stand still, made once and kept on disk.
 std::unique_ptr<GammaMethod> makeBakedGamma(const GammaContext& context);
 /// The same about the curved walls, or null where making the grid could take more than some seconds.

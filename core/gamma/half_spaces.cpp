@@ -36,7 +36,7 @@ bool intersect(std::vector<HalfSpace>& set, const HalfSpace& added) {
   return true;
 }
 
-void HalfSpaces::addBlock(bool thin, float inverseSupport) {
+bool HalfSpaces::addBlock(bool thin, float inverseSupport) {
   if (thin) dropHidden(pieces_);
   std::vector<HalfSpace>& block = blocks.emplace_back(tanks);
   std::vector<float> own;
@@ -44,16 +44,18 @@ void HalfSpaces::addBlock(bool thin, float inverseSupport) {
     const HalfSpace behind{-piece.normal, -piece.planeDistance * inverseSupport};
     if (intersect(block, behind)) own.push_back(behind.e);
   }
-  if (!thin) return;
+  if (!thin) return false;
   // An edge of the block is as near as its two faces together.
   for (std::size_t k = 0; k < own.size(); ++k)
-    for (std::size_t l = 0; l < k; ++l) thinRim = thinRim || own[k] * own[k] + own[l] * own[l] < 1;
+    for (std::size_t l = 0; l < k; ++l)
+      if (own[k] * own[k] + own[l] * own[l] < 1) return true;
+  return false;
 }
 
-void HalfSpaces::collect(const Boundary& boundary, const Vec3f& p, float supportRadius) {
+bool HalfSpaces::collect(const Boundary& boundary, const Vec3f& p, float supportRadius, bool untilRim) {
   tanks.clear();
   blocks.clear();
-  thinRim = false;
+  bool thinRim = false;
   const float inverse = 1 / supportRadius;
   const std::span<const Surface* const> near = boundary.near(p, supportRadius);
   for (const Surface* surface : near) {
@@ -66,8 +68,11 @@ void HalfSpaces::collect(const Boundary& boundary, const Vec3f& p, float support
     if (surface->pieceRule() != PieceRule::solidInsideAll) continue;
     pieces_.clear();
     surface->pieces(p, supportRadius, pieces_);
-    if (!pieces_.empty()) addBlock(surface->thickness() < supportRadius, inverse);
+    if (pieces_.empty()) continue;
+    thinRim = addBlock(surface->thickness() < supportRadius, inverse) || thinRim;
+    if (thinRim && untilRim) break;
   }
+  return thinRim;
 }
 
 std::optional<FlatPlanes> FlatPlanes::of(const Boundary& boundary, float supportRadius) {

@@ -6,6 +6,7 @@
 // what it hides does not count. That is exact but near its rim.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -25,14 +26,14 @@ struct HalfSpaces {
   std::vector<HalfSpace> tanks;
   /// Each with the tanks' half-spaces.
   std::vector<std::vector<HalfSpace>> blocks;
-  /// Whether the rim of a thin block is in reach, where what it hides is no intersection of half-spaces.
-  bool thinRim = false;
-
-  /// Takes the planar pieces of the surfaces that are nearer than the support radius.
-  void collect(const Boundary& boundary, const Vec3f& p, float supportRadius);
+  /// Takes the planar pieces of the surfaces that are nearer than the support radius. Returns whether the rim
+  /// of a thin block is in reach, where what it hides is no intersection of half-spaces; with `untilRim` it
+  /// then leaves out what else there is.
+  bool collect(const Boundary& boundary, const Vec3f& p, float supportRadius, bool untilRim = false);
 
  private:
-  void addBlock(bool thin, float inverseSupport);
+  /// Whether its rim is in reach, if it is thin.
+  bool addBlock(bool thin, float inverseSupport);
 
   std::vector<WallPiece> pieces_;
 };
@@ -106,6 +107,50 @@ class FlatPlanes {
   std::vector<FlatPlane> planes_;
   std::vector<Axis> axes_;
   std::vector<std::pair<int, int>> oblique_;
+};
+
+// Convex polygons, and what half-spaces leave of them.
+
+/// A flat convex polygon.
+struct Polygon {
+  /// What is cut gains a corner with every cut; one that has as many is cut no more.
+  static constexpr int kMost = 24;
+
+  std::array<Vec3f, kMost> corners;
+  int count = 0;
+
+  void add(const Vec3f& corner) { corners[static_cast<std::size_t>(count++)] = corner; }
+  bool empty() const { return count < 3; }
+  const Vec3f& corner(int k) const { return corners[static_cast<std::size_t>(k == count ? 0 : k)]; }
+};
+
+/// Where normal . y + offset >= 0.
+struct CutPlane {
+  Vec3f normal;
+  float offset = 0;
+  float at(const Vec3f& y) const { return normal.dot(y) + offset; }
+};
+
+/// Whether the plane passes through the polygon, or which side all of it lies on.
+enum class PlaneSide { inside, across, outside };
+PlaneSide sideOf(const Polygon& polygon, const CutPlane& plane);
+
+/// The part of a polygon on the inside of a plane; empty where there is none.
+void clip(Polygon& polygon, const CutPlane& plane);
+
+/// What a point at the origin sees through a polygon that faces it: the half-spaces that bound that cone.
+class ViewCone {
+ public:
+  /// `normal`: unit, to the side of the origin, which is `distance` from the plane.
+  ViewCone(const Polygon& polygon, const Vec3f& normal, float distance);
+
+  /// Takes the part of `polygon` that is in the cone and behind its polygon out of it: what is left is
+  /// appended in pieces. False, and nothing appended, where there is no such part.
+  bool subtractFrom(const Polygon& polygon, std::vector<Polygon>& left) const;
+
+ private:
+  std::array<CutPlane, Polygon::kMost + 1> planes_;
+  int count_ = 0;
 };
 
 }  // namespace migiwa

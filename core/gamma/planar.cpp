@@ -27,9 +27,9 @@ class PlanarGamma final : public GammaMethod {
   void wallsMoved() override { flat_ = FlatPlanes::of(boundary_, support_); }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
-    HalfSpaces walls;
-    std::vector<KernelPart> parts;
     if (flat_) {
+      HalfSpaces walls;
+      std::vector<KernelPart> parts;
       productOfPlanes(*flat_, kernel_, support_, points, out);
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3f p = points[i].xyz();
@@ -41,11 +41,19 @@ class PlanarGamma final : public GammaMethod {
       return;
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3f p = points[i].xyz();
       out[i] = GammaSample{};
-      out[i].distance = boundary_.distance(p);
+      out[i].distance = boundary_.distance(points[i].xyz());
+    }
+    evaluateMeasured(points, out);
+  }
+
+  void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    if (flat_) return evaluate(points, out);
+    HalfSpaces walls;
+    std::vector<KernelPart> parts;
+    for (std::size_t i = 0; i < points.size(); ++i) {
       if (out[i].distance >= support_) continue;
-      walls.collect(boundary_, p, support_);
+      walls.collect(boundary_, points[i].xyz(), support_);
       combine(walls, parts, out[i]);
     }
   }

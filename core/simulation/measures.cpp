@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/sph/neighbours.h"
 #include "core/walls/boundary.h"
@@ -63,6 +64,11 @@ std::vector<NearestNeighbour> nearestNeighbours(std::span<const Float4> position
 
 }  // namespace
 
+struct SettledSampler::Walls {
+  std::vector<std::shared_ptr<const Surface>> surfaces;
+  Boundary boundary;
+};
+
 void SettledSampler::sample(const Simulation& simulation) {
   const FrameView view = simulation.view();
   sample(simulation.scene(), view.positions, view.velocities, simulation.time());
@@ -78,11 +84,14 @@ void SettledSampler::sample(const Scene& scene, std::span<const Float4> position
   sums_.squaredSpeed += squaredSpeed / static_cast<double>(n);
 
   ThreadPool pool(1);
-  Boundary boundary(scene.surfaces);
-  boundary.moveTo(time, time);
-  for (const NearestNeighbour& nearest :
-       nearestNeighbours(positions, boundary, static_cast<float>(scene.particleSpacing),
-                         static_cast<float>(scene.supportRadius()), pool)) {
+  const auto support = static_cast<float>(scene.supportRadius());
+  if (walls_ == nullptr || walls_->surfaces != scene.surfaces) {
+    walls_ = std::make_shared<Walls>(Walls{scene.surfaces, Boundary(scene.surfaces)});
+    walls_->boundary.indexWalls(support);
+  }
+  walls_->boundary.moveTo(time, time);
+  for (const NearestNeighbour& nearest : nearestNeighbours(
+           positions, walls_->boundary, static_cast<float>(scene.particleSpacing), support, pool)) {
     if (std::isfinite(nearest.distance)) (nearest.nearWall ? nearWall_ : bulk_).add(nearest.distance);
   }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,6 +75,8 @@ class SettledSampler {
     double height = 0, expectedHeight = 0, edgeCrowding = 0, squaredSpeed = 0;
     int boxFrames = 0, frames = 0;
   } sums_;
+  struct Walls;
+  std::shared_ptr<Walls> walls_;  ///< of the last scene, to be asked again
   SpacingHistogram nearWall_, bulk_;
   long last_ = -1;  ///< the run's last frame; negative: no run yet
 };

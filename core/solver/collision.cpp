@@ -114,8 +114,8 @@ WallIndex collisionWalls(const Boundary& boundary, float supportRadius) {
 
 Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to, float margin) {
   Vec3f held = to, normal;
-  const bool within = (to - from).norm() < walls.reach();
-  for (const Surface* wall : within ? walls.near(from) : walls.all()) {
+  const float length = (to - from).norm();
+  for (const Surface* wall : length < walls.reach() ? walls.near(from, length) : walls.all()) {
     const Vec3f start = stepBegan ? wall->carried(from) : from;
     float entry = 0;
     if (held == start || !wall->crosses(start, held, normal, entry)) continue;

@@ -41,7 +41,7 @@ class Boundary {
   /// The walls that come nearer than `reach` (m) to p, and the nearest of all; some more, in the order of
   /// surfaces().
   std::span<const Surface* const> near(const Vec3f& p, float reach = 0) const {
-    return reach <= near_.reach() ? near_.near(p) : near_.all();
+    return reach <= near_.reach() ? near_.near(p, reach) : near_.all();
   }
 
   bool empty() const { return surfaces_.empty(); }

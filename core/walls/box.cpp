@@ -43,7 +43,7 @@ void Box::describe(FieldVisitor& visitor) {
 }
 
 inline Vec3f Box::toLocal(const Vec3f& p) const {
-  return toLocal_ * (p - center_);
+  return turned_ ? Vec3f(toLocal_ * (p - center_)) : Vec3f(p - center_);
 }
 
 inline Vec3f Box::toWorld(const Vec3f& local) const {
@@ -55,6 +55,9 @@ void Box::prepare() {
   center_ = geometry_.center.cast<float>();
   half_ = geometry_.halfExtents.cast<float>();
   toLocal_ = geometry_.axes.transpose().cast<float>();
+  turned_ = toLocal_ != Eigen::Matrix3f::Identity();
+  for (int index = 0; index < 8; ++index)
+    corners_[static_cast<std::size_t>(index)] = corner(index).cast<float>();
 }
 
 float Box::distance(const Vec3f& p, Vec3f& normal) const {
@@ -73,7 +76,7 @@ float Box::distance(const Vec3f& p, Vec3f& normal) const {
     outward = Vec3f::Unit(axis);
   }
   for (int axis = 0; axis < 3; ++axis) outward[axis] = std::copysign(outward[axis], local[axis]);
-  outward = toLocal_.transpose() * outward;
+  if (turned_) outward = toLocal_.transpose() * outward;
   normal = fluid_ == Fluid::inside ? Vec3f(-outward) : outward;
   return fluid_ == Fluid::inside ? -outside : outside;
 }
@@ -128,6 +131,29 @@ void Box::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const
       foot[axis] = side * half_[axis];
       const Vec3f outward = side * toLocal_.row(axis).transpose();
       out.push_back({inside ? Vec3f(-outward) : outward, inside ? within : -within, toWorld(foot)});
+    }
+  }
+}
+
+void Box::facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const {
+  const Vec3f local = toLocal(p);
+  const Vec3f beyond = (local.cwiseAbs() - half_).cwiseMax(0.0F);
+  if (beyond.squaredNorm() >= supportRadius * supportRadius) return;
+  const bool hides = thickness() < supportRadius;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int one = (axis + 1) % 3, other = (axis + 2) % 3;
+    for (const float side : {-1.0F, 1.0F}) {
+      const float above = side * local[axis] - half_[axis];
+      if (std::abs(above) >= supportRadius || (hides && above < -0.01F * supportRadius)) continue;
+      WallFacet& facet = out.emplace_back();
+      facet.count = 4;
+      facet.normal = side * toLocal_.row(axis).transpose();
+      facet.hides = hides;
+      facet.alone = true;
+      // Counter-clockwise about the axis, clockwise about its opposite.
+      const std::size_t from = side > 0 ? 1U << axis : 0U, a = 1U << (side > 0 ? one : other),
+                        b = 1U << (side > 0 ? other : one);
+      facet.corners = {corners_[from], corners_[from + a], corners_[from + a + b], corners_[from + b]};
     }
   }
 }

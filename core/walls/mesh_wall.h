@@ -46,16 +46,22 @@ class TriangleWall final : public Surface {
   void wireframe(const Bounds&, std::vector<LineSegment>&) const override {}
   WallMesh mesh() const override;
   bool enclosed(TriangleMesh& mesh) const override;
+  bool faceted() const override { return true; }
+  void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override;
 
  private:
   void measureThickness();
+  /// Whether it hides no other from a point on the side that its normal points to or, if `behind`, on the
+  /// other.
+  bool standsAlone(std::uint32_t triangle, bool behind) const;
   float thicknessBehind(const WallTriangle& triangle) const;
 
   std::shared_ptr<const TriangleTree> tree_;
   bool vessel_;
   float supportRadius_;
-  std::vector<bool> thin_;  ///< of each of the tree's triangles
-  bool hasThick_ = false;   ///< whether there is one that is not
+  std::vector<bool> thin_;                 ///< of each of the tree's triangles
+  std::vector<bool> alone_, aloneBehind_;  ///< of each: hides no other from a point on that side
+  bool hasThick_ = false;                  ///< whether there is one that is not
   float thickness_ = std::numeric_limits<float>::infinity();
 };
 

@@ -251,6 +251,15 @@ void MovingSurface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& 
   }
 }
 
+void MovingSurface::facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const {
+  const std::size_t before = out.size();
+  rest_->facets(toRest(p), supportRadius, out);
+  for (std::size_t k = before; k < out.size(); ++k) {
+    out[k].normal = directionToWorld(out[k].normal);
+    for (Vec3f& corner : out[k].corners) corner = toWorld(corner);
+  }
+}
+
 Bounds MovingSurface::bounds() const {
   return migiwa::moved(rest_->bounds(), motion().at(now_));
 }

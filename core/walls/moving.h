@@ -52,6 +52,8 @@ class MovingSurface final : public Surface {
   bool planar() const override { return rest_->planar(); }
   PieceRule pieceRule() const override { return rest_->pieceRule(); }
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
+  bool faceted() const override { return rest_->faceted(); }
+  void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
   WallMesh mesh() const override;

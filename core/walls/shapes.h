@@ -99,6 +99,9 @@ class Box final : public Surface {
   PieceRule pieceRule() const override {
     return fluid_ == Fluid::inside ? PieceRule::fluidInsideAll : PieceRule::solidInsideAll;
   }
+  /// A block is; of a tank, the half-spaces of its pieces say all.
+  bool faceted() const override { return fluid_ == Fluid::outside; }
+  void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override;
   bool enclosed(TriangleMesh& mesh) const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
@@ -123,6 +126,8 @@ class Box final : public Surface {
   BoxGeometry geometry_;
   Vec3f center_ = Vec3f::Constant(0.5F), half_ = Vec3f::Constant(0.5F);
   Eigen::Matrix3f toLocal_ = Eigen::Matrix3f::Identity();
+  bool turned_ = false;
+  std::array<Vec3f, 8> corners_{};  ///< bit k of the place: the upper end of axis k
 };
 
 // A wall that is the graph of a polynomial of degree 1 to 3 over a plane, z = sum c x^i y^j in a frame at

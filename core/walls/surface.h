@@ -115,6 +115,15 @@ struct WallPiece {
   Vec3f foot;           ///< closest point of the piece itself
 };
 
+/// A flat convex piece of a wall, to its own borders.
+struct WallFacet {
+  std::array<Vec3f, 4> corners;  ///< (m), counter-clockwise seen from where the normal points
+  int count;                     ///< of corners: 3 or 4
+  Vec3f normal;                  ///< unit, into the fluid; of a sheet, to the side of the point
+  bool hides;                    ///< belongs to what is so thin that nothing behind it counts
+  bool alone;                    ///< hides no other facet of its wall that faces the same point
+};
+
 /// How the pieces of one surface make up its solid.
 enum class PieceRule {
   fluidInsideAll,  ///< the fluid is the intersection of the pieces' fluid sides: a tank
@@ -222,6 +231,12 @@ class Surface {
   /// reach. A curved wall has one: the tangent plane at its nearest point.
   virtual void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const;
 
+  /// Whether the wall is made of flat pieces that facets() has.
+  virtual bool faceted() const { return false; }
+  /// Appends the facets that come nearer than the support radius (m) to p, and some more. Where all of the
+  /// wall hides what is behind it, those that face away from p may be left out.
+  virtual void facets(const Vec3f& /*p*/, float /*supportRadius*/, std::vector<WallFacet>& /*out*/) const {}
+
   /// Appends a closed mesh, its front outwards, around what the shape encloses, be that fluid or solid: exact
   /// but where it is round, and there within a three-thousandth of its radius. False where it encloses
   /// nothing.
@@ -275,6 +290,10 @@ class StandIn : public Surface {
   PieceRule pieceRule() const override { return shape_->pieceRule(); }
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override {
     shape_->pieces(p, reach, out);
+  }
+  bool faceted() const override { return shape_->faceted(); }
+  void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override {
+    shape_->facets(p, supportRadius, out);
   }
   Bounds bounds() const override { return shape_ != nullptr ? shape_->bounds() : Bounds{}; }
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override {

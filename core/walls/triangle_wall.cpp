@@ -32,12 +32,52 @@ TriangleWall::TriangleWall(std::shared_ptr<const TriangleTree> tree, bool vessel
 void TriangleWall::measureThickness() {
   const std::vector<WallTriangle>& triangles = tree_->triangles();
   thin_.resize(triangles.size());
+  alone_.resize(triangles.size(), true);
+  aloneBehind_.resize(triangles.size(), true);
   for (std::size_t k = 0; k < triangles.size(); ++k) {
     const float behind = triangles[k].sheet ? 0 : thicknessBehind(triangles[k]);
     thin_[k] = triangles[k].sheet || behind < supportRadius_;
     thickness_ = std::min(thickness_, behind);
     hasThick_ = hasThick_ || !thin_[k];
+    if (!thin_[k] || supportRadius_ <= 0) continue;
+    alone_[k] = standsAlone(static_cast<std::uint32_t>(k), false);
+    if (triangles[k].sheet) aloneBehind_[k] = standsAlone(static_cast<std::uint32_t>(k), true);
   }
+}
+
+bool TriangleWall::standsAlone(std::uint32_t triangle, bool behind) const {
+  // Another that it hides from a point lies behind its plane, and it before that of the other: some corners
+  // of each do.
+  const WallTriangle& own = tree_->triangles()[triangle];
+  const float slack = kOnPlane * supportRadius_;
+  const auto reaches = [slack](const WallTriangle& of, const WallTriangle& other, float side) {
+    return std::any_of(other.corners.begin(), other.corners.end(), [&](const Vec3f& corner) {
+      return side * of.normal.dot(corner - of.corners[0]) > slack;
+    });
+  };
+  const auto mayHide = [&](const WallTriangle& other) {
+    return reaches(own, other, behind ? 1 : -1) &&
+           (reaches(other, own, 1) || (other.sheet && reaches(other, own, -1)));
+  };
+  // Of one support: all that a point sees of the wall together with this triangle.
+  const Vec3f reach = Vec3f::Constant(2 * supportRadius_);
+  const Vec3f low = own.corners[0].cwiseMin(own.corners[1]).cwiseMin(own.corners[2]) - reach,
+              high = own.corners[0].cwiseMax(own.corners[1]).cwiseMax(own.corners[2]) + reach;
+  return !tree_->visitBox(low, high,
+                          [&](std::uint32_t k) { return k != triangle && mayHide(tree_->triangles()[k]); });
+}
+
+void TriangleWall::facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const {
+  tree_->visitWithin(p, supportRadius, [&](std::uint32_t k) {
+    const WallTriangle& triangle = tree_->triangles()[k];
+    const std::array<Vec3f, 3>& corners = triangle.corners;
+    const bool turned = triangle.sheet && triangle.normal.dot(p - corners[0]) < 0;
+    out.push_back({{corners[0], corners[turned ? 2 : 1], corners[turned ? 1 : 2]},
+                   3,
+                   turned ? Vec3f(-triangle.normal) : triangle.normal,
+                   thin_[k],
+                   turned ? aloneBehind_[k] : alone_[k]});
+  });
 }
 
 float TriangleWall::thicknessBehind(const WallTriangle& triangle) const {

@@ -62,10 +62,14 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
     least.push_back(distance - change);
     most = std::min(most, distance + change);
   }
-  const float wanted = nearestToo ? std::max(most, reach_) : reach_;
-  std::vector<const Surface*> kept;
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (least[k] <= wanted) kept.push_back(candidates[k]);
+  const auto within = [&](float reach) {
+    const float wanted = nearestToo ? std::max(most, reach) : reach;
+    std::vector<const Surface*> kept;
+    for (std::size_t k = 0; k < candidates.size(); ++k)
+      if (least[k] <= wanted) kept.push_back(candidates[k]);
+    return kept;
+  };
+  const std::vector<const Surface*> kept = within(reach_);
 
   const Eigen::Vector3i size = block.high - block.low;
   int axis = 0;
@@ -76,9 +80,13 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
     fill(other, kept, nearestToo);
     return;
   }
-  const Range range{static_cast<std::uint32_t>(listed_.size()),
-                    static_cast<std::uint32_t>(listed_.size() + kept.size())};
-  listed_.insert(listed_.end(), kept.begin(), kept.end());
+  Range range;
+  range.begin = static_cast<std::uint32_t>(listed_.size());
+  for (std::size_t level = 0; level < kLevels.size(); ++level) {
+    const std::vector<const Surface*> some = within(kLevels[level] * reach_);
+    range.counts[level] = static_cast<std::uint32_t>(some.size());
+    listed_.insert(listed_.end(), some.begin(), some.end());
+  }
   for (int z = block.low.z(); z < block.high.z(); ++z)
     for (int y = block.low.y(); y < block.high.y(); ++y)
       for (int x = block.low.x(); x < block.high.x(); ++x)
@@ -88,7 +96,7 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
                static_cast<std::size_t>(x)] = range;
 }
 
-std::span<const Surface* const> WallIndex::near(const Vec3f& p) const {
+std::span<const Surface* const> WallIndex::near(const Vec3f& p, float reach) const {
   if (cells_.empty()) return walls_;
   const Vec3f at = inverseCell_ * (p - origin_);
   if (!((at.array() >= 0).all() && (at.array() < size_.cast<float>().array()).all())) return beyond_;
@@ -97,7 +105,9 @@ std::span<const Surface* const> WallIndex::near(const Vec3f& p) const {
                                static_cast<std::size_t>(cell.y())) *
                                   static_cast<std::size_t>(size_.x()) +
                               static_cast<std::size_t>(cell.x())];
-  return std::span(listed_).subspan(range.begin, range.end - range.begin);
+  std::size_t level = 0, begin = range.begin;
+  while (level + 1 < kLevels.size() && reach > kLevels[level] * reach_) begin += range.counts[level++];
+  return std::span(listed_).subspan(begin, range.counts[level]);
 }
 
 }  // namespace migiwa

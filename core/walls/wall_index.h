@@ -26,11 +26,17 @@ class WallIndex {
   std::span<const Surface* const> all() const { return walls_; }
   float reach() const { return reach_; }
   /// In the order of all(), with some more than it must have.
-  std::span<const Surface* const> near(const Vec3f& p) const;
+  std::span<const Surface* const> near(const Vec3f& p) const { return near(p, reach_); }
+  /// Those that come nearer than a reach (m) that is not above reach(): the same, or fewer.
+  std::span<const Surface* const> near(const Vec3f& p, float reach) const;
 
  private:
+  /// Parts of the reach that a cell has lists for.
+  static constexpr std::array<float, 3> kLevels{0, 0.3F, 1};
+  /// Lists of a cell, one after another.
   struct Range {
-    std::uint32_t begin = 0, end = 0;
+    std::uint32_t begin = 0;
+    std::array<std::uint32_t, kLevels.size()> counts{};
   };
   /// Cells from `low` on, before `high`.
   struct Block {

@@ -1,0 +1,429 @@
+// gamma of walls made of flat polygons, by sums over their edges. With P(r) = integral_r^h W s^2 ds, the
+// field
+//   V(y) = -(y - x) P(r) / r^3,   r = |y - x|,
+// has the divergence W(r) but at x, and none of it is left at the support radius. So what a solid takes from
+// the kernel of a point x outside of it is the flux of V through its facets, their normals n into the fluid:
+//   gamma = 1 - sum over facets of integral V . n dA,   grad gamma = sum over facets of n integral W dA.
+// The flux through one facet is what the kernel holds in the cone behind it. So the same sum over the facets
+// that a point sees, and no others, leaves out all that a thin wall hides; the sides of the cones then belong
+// to the border of the fluid as well, and their integrals to the gradient. Between two cones they cancel.
+//
+// The integrals over a facet at height d over the point, in polar coordinates about the foot of the point,
+//   integral V . n dA = closed integral of d [Phi(d) - Phi(r)] dangle,   Phi(r) = integral_r^h P / s^2 ds,
+//   integral W dA     = closed integral of [K(d) - K(r)] dangle,         K(r) = integral_r^h W s ds,
+// run along its edges as well (facets_simd.cpp); d Phi(d) and K(d) over a full turn are the closed forms of a
+// plane. The side of a cone is a plane through the point: integral K(r) dangle.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/gamma/batches.h"
+#include "core/gamma/gamma_method.h"
+#include "core/gamma/half_spaces.h"
+#include "core/sph/kernels.h"
+#include "core/walls/surface.h"
+
+namespace migiwa {
+
+namespace {
+
+/// Of the support radius: so far behind a plane a point is still taken to lie in front of it.
+constexpr float kOnPlane = 1e-3F;
+/// Of the support radius: nearer than that to a plane, a corner of another facet lies on it.
+constexpr float kRounding = 1e-5F;
+/// Of the support radius: from a corner or an edge no facet is seen, so that much a point is kept off walls.
+constexpr float kClear = 1e-4F;
+
+/// A facet as a point at the origin sees it; lengths over the support radius.
+struct Facet {
+  Polygon polygon;
+  Vec3f normal;    ///< unit, into the fluid
+  float distance;  ///< of the point to the plane, negative behind it
+  bool hides;      ///< what lies behind it does not count
+  bool alone;      ///< stands before no other facet of its wall
+  std::size_t wall;
+  bool shaded = false;  ///< others may hide some of it
+  bool open = false;    ///< it and others do not close around a solid
+
+  bool front() const { return distance >= 0; }
+  /// Whether the point's foot lies in the facet, or so near to it.
+  bool within(float slack) const {
+    for (int k = 0; k < polygon.count; ++k) {
+      const Vec3f& a = polygon.corner(k);
+      const Vec3f inwards = normal.cross(polygon.corner(k + 1) - a);
+      if (-a.dot(inwards) < -slack * inwards.norm()) return false;
+    }
+    return true;
+  }
+  /// Whether it faces the point, and hides what is behind it.
+  bool shades() const { return hides && front(); }
+};
+
+/// A cone about the point that holds a facet.
+struct Cone {
+  std::size_t facet;
+  Vec3f axis;          ///< unit
+  float cosine, sine;  ///< of half its angle
+
+  Cone(const Polygon& polygon, std::size_t at) : facet(at), axis(Vec3f::Zero()), cosine(1) {
+    for (int k = 0; k < polygon.count; ++k) axis += polygon.corner(k);
+    axis.normalize();
+    for (int k = 0; k < polygon.count; ++k)
+      cosine = std::min(cosine, axis.dot(polygon.corner(k)) / polygon.corner(k).norm());
+    cosine -= kRounding;
+    sine = std::sqrt(std::max(1 - cosine * cosine, 0.0F));
+  }
+  /// Whether no direction is in both.
+  bool apartFrom(const Cone& other) const {
+    return sine * other.cosine + cosine * other.sine > 0 &&
+           axis.dot(other.axis) < cosine * other.cosine - sine * other.sine;
+  }
+};
+
+/// Whether a polygon's plane is in reach at `distance`, but the polygon itself is not.
+bool outOfReach(const Polygon& polygon, const Vec3f& normal, float distance) {
+  const float reach2 = 1 - distance * distance;
+  for (int k = 0; k < polygon.count; ++k) {
+    const Vec3f& a = polygon.corner(k);
+    const Vec3f way = polygon.corner(k + 1) - a;
+    const float outside = a.dot(normal.cross(way));
+    if (outside > 0 && outside * outside >= reach2 * way.squaredNorm()) return true;
+  }
+  return false;
+}
+
+/// Whether some of `other` may be behind `facet`, as the point sees it.
+bool mayShade(const Facet& facet, const Facet& other, bool first) {
+  const auto within = [](const Facet& of, const Vec3f& corner) {
+    return of.normal.dot(corner) + of.distance;
+  };
+  bool behind = false, before = false;
+  for (int k = 0; k < other.polygon.count; ++k) {
+    const float height = within(facet, other.polygon.corner(k));
+    behind = behind || height < -kRounding;
+    before = before || height > kRounding;
+  }
+  // Of two in one plane, the first counts.
+  if (!behind && (before || !first)) return false;
+  if (behind) {
+    const float side = other.front() ? 1.0F : -1.0F;
+    bool nearer = false;
+    for (int k = 0; k < facet.polygon.count; ++k)
+      nearer = nearer || side * within(other, facet.polygon.corner(k)) > kRounding;
+    if (!nearer) return false;
+  }
+  // Nor where one of its edges, as the point sees it, keeps them apart.
+  for (int k = 0; k < facet.polygon.count; ++k) {
+    const Vec3f outwards = facet.polygon.corner(k).cross(facet.polygon.corner(k + 1));
+    bool apart = outwards.squaredNorm() > 1e-18F;  // one that points at the point keeps nothing apart
+    for (int l = 0; l < other.polygon.count; ++l) apart = apart && outwards.dot(other.polygon.corner(l)) >= 0;
+    if (apart) return false;
+  }
+  return true;
+}
+
+template <class Kernel>
+class FacetsGamma final : public GammaMethod {
+ public:
+  explicit FacetsGamma(const GammaContext& context)
+      : boundary_(context.boundary), kernel_(context.kernel), support_(context.supportRadius) {}
+
+  void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out[i] = GammaSample{};
+      out[i].distance = boundary_.distance(points[i].xyz());
+    }
+    evaluateMeasured(points, out);
+  }
+
+  void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const override {
+    thread_local Scratch scratch;
+    scratch.edges.clear();
+    scratch.owners.clear();
+    scratch.moved.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      GammaSample& sample = out[i];
+      if (sample.distance >= support_) continue;
+      Vec3f p = points[i].xyz();
+      // A point behind a wall is taken at the wall, and gamma continued linearly.
+      Vec3f moved = Vec3f::Zero();
+      if (sample.distance < 0) {
+        Vec3f normal;
+        moved = boundary_.distance(p, normal) * normal;
+        p -= moved;
+        moved /= support_;
+      }
+      look(p, scratch);
+      if (sample.distance < kClear * support_) {
+        moved -= keepOff(scratch);
+        scratch.moved.push_back({i, moved});
+      }
+      addTanks(i, scratch, sample);
+      addFacets(i, scratch, sample);
+    }
+    integrate(kernel_, scratch.edges, scratch.results);
+    for (std::size_t k = 0; k < scratch.owners.size(); ++k) {
+      const Owner& owner = scratch.owners[k];
+      GammaSample& sample = out[owner.sample];
+      sample.gamma += owner.flux * scratch.results[k].flux;
+      sample.gradient -= scratch.results[k].area * owner.normal;
+      sample.pairGradient -= scratch.results[k].pairArea * owner.normal;
+    }
+    for (const auto& [at, by] : scratch.moved) out[at].gamma += out[at].gradient.dot(by);
+    for (GammaSample& sample : out) sample.gamma = std::clamp(sample.gamma, 0.0F, 1.0F);
+  }
+
+ private:
+  using Pair = PairKernel<Kernel>;
+
+  /// What the integrals along an edge are added to.
+  struct Owner {
+    std::size_t sample;
+    float flux;    ///< sign, 0 for the side of a cone
+    Vec3f normal;  ///< with the sign
+  };
+  struct Scratch {
+    std::vector<PolygonEdge> edges;
+    std::vector<EdgeIntegrals> results;
+    std::vector<Owner> owners;                         ///< of the edges
+    std::vector<std::pair<std::size_t, Vec3f>> moved;  ///< samples, and how far from where they were taken
+    // Of one point:
+    std::vector<HalfSpace> tanks;
+    std::vector<Facet> facets;
+    std::vector<Cone> shades;  ///< about those that hide what is behind them
+    std::vector<Polygon> pieces, after;
+    std::vector<WallFacet> wall;
+    std::vector<WallPiece> planes;
+  };
+
+  /// Collects the facets and half-spaces in reach of p.
+  void look(const Vec3f& p, Scratch& scratch) const {
+    const float inverse = 1 / support_;
+    scratch.tanks.clear();
+    scratch.facets.clear();
+    for (const Surface* surface : boundary_.near(p, support_)) {
+      if (!surface->faceted()) {
+        scratch.planes.clear();
+        surface->pieces(p, support_, scratch.planes);
+        for (const WallPiece& piece : scratch.planes)
+          intersect(scratch.tanks, {piece.normal, std::max(piece.planeDistance * inverse, 0.0F)});
+        continue;
+      }
+      scratch.wall.clear();
+      surface->facets(p, support_, scratch.wall);
+      const std::size_t first = scratch.facets.size();
+      bool passable = false;
+      for (const WallFacet& facet : scratch.wall) {
+        const float distance = inverse * facet.normal.dot(p - facet.corners[0]);
+        if (std::abs(distance) >= 1) continue;
+        Facet& added = scratch.facets.emplace_back();
+        added.normal = facet.normal;
+        added.distance = distance < -kOnPlane ? distance : std::max(distance, 0.0F);
+        added.hides = facet.hides;
+        added.alone = facet.alone;
+        added.wall = first;
+        for (int k = 0; k < facet.count; ++k)
+          added.polygon.add(inverse * (facet.corners[static_cast<std::size_t>(k)] - p));
+        if (outOfReach(added.polygon, added.normal, added.distance)) {
+          scratch.facets.pop_back();
+          continue;
+        }
+        passable = passable || (added.front() && !added.hides);
+      }
+      if (passable) continue;
+      // Nothing comes out again behind what hides.
+      scratch.facets.erase(
+          std::remove_if(scratch.facets.begin() + static_cast<std::ptrdiff_t>(first), scratch.facets.end(),
+                         [](const Facet& facet) { return !facet.front(); }),
+          scratch.facets.end());
+    }
+  }
+
+  /// Moves the point off all that it touches, and returns how far.
+  static Vec3f keepOff(Scratch& scratch) {
+    Vec3f away = Vec3f::Zero();
+    for (const HalfSpace& tank : scratch.tanks)
+      if (tank.e < kClear) away += kClear * tank.normal;
+    for (const Facet& facet : scratch.facets)
+      if (facet.front() && facet.distance < kClear && facet.within(kClear)) away += kClear * facet.normal;
+    for (HalfSpace& tank : scratch.tanks) tank.e = std::max(tank.e + away.dot(tank.normal), 0.0F);
+    for (Facet& facet : scratch.facets) {
+      const float distance = facet.distance + away.dot(facet.normal);
+      facet.distance = facet.front() ? std::max(distance, 0.0F) : distance;
+      for (int k = 0; k < facet.polygon.count; ++k)
+        facet.polygon.corners[static_cast<std::size_t>(k)] -= away;
+    }
+    return away;
+  }
+
+  void addFacets(std::size_t i, Scratch& scratch, GammaSample& sample) const {
+    std::vector<Facet>& facets = scratch.facets;
+    for (Facet& facet : facets) {
+      for (const HalfSpace& tank : scratch.tanks) clip(facet.polygon, {tank.normal, tank.e});
+    }
+    scratch.shades.clear();
+    const bool oneWall = std::all_of(facets.begin(), facets.end(), [&](const Facet& facet) {
+      return facet.wall == facets.front().wall && facet.front();
+    });
+    for (std::size_t k = 0; k < facets.size(); ++k)
+      if (facets[k].shades() && !facets[k].polygon.empty() && !(oneWall && facets[k].alone))
+        scratch.shades.emplace_back(facets[k].polygon, k);
+    for (std::size_t k = 0; k < facets.size(); ++k)
+      facets[k].shaded = anyShade(k, scratch, [](const Facet&) { return true; });
+    // What hides something, or is hidden in part, ends in the sides of cones, and so does the rest of its
+    // wall.
+    for (std::size_t first = 0, end = 0; first < facets.size(); first = end) {
+      bool open = false;
+      for (end = first; end < facets.size() && facets[end].wall == facets[first].wall; ++end)
+        open = open || facets[end].shades() || facets[end].shaded;
+      for (std::size_t k = first; k < end; ++k) facets[k].open = open;
+    }
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      if (facets[k].polygon.empty()) continue;
+      if (facets[k].shaded) {
+        leaveSeen(k, scratch);
+        for (const Polygon& piece : scratch.pieces) addPiece(i, facets[k], piece, scratch, sample);
+      } else {
+        addPiece(i, facets[k], facets[k].polygon, scratch, sample);
+      }
+    }
+  }
+
+  /// Calls visit(shade) for the facets that may hide some of facet k, until it returns true. Returns whether
+  /// it did.
+  template <class Visit>
+  static bool anyShade(std::size_t k, const Scratch& scratch, const Visit& visit) {
+    const Facet& facet = scratch.facets[k];
+    if (facet.polygon.empty() || scratch.shades.empty()) return false;
+    const Cone own(facet.polygon, k);
+    for (const Cone& cone : scratch.shades) {
+      if (cone.facet == k || cone.apartFrom(own)) continue;
+      const Facet& shade = scratch.facets[cone.facet];
+      if (shade.wall == facet.wall && shade.alone && facet.front()) continue;
+      if (mayShade(shade, facet, cone.facet < k) && visit(shade)) return true;
+    }
+    return false;
+  }
+
+  /// The pieces that others leave of a facet.
+  static void leaveSeen(std::size_t k, Scratch& scratch) {
+    scratch.pieces.assign(1, scratch.facets[k].polygon);
+    anyShade(k, scratch, [&scratch](const Facet& shade) {
+      const ViewCone cone(shade.polygon, shade.normal, shade.distance);
+      scratch.after.clear();
+      for (const Polygon& polygon : scratch.pieces)
+        if (!cone.subtractFrom(polygon, scratch.after)) scratch.after.push_back(polygon);
+      std::swap(scratch.pieces, scratch.after);
+      return scratch.pieces.empty();
+    });
+  }
+
+  /// Inside of all half-spaces: each takes what is behind its own part of their border.
+  void addTanks(std::size_t i, Scratch& scratch, GammaSample& sample) const {
+    const std::vector<HalfSpace>& tanks = scratch.tanks;
+    for (std::size_t k = 0; k < tanks.size(); ++k) {
+      const HalfSpace& tank = tanks[k];
+      // A square that holds the support, in the plane.
+      const Vec3f one = tank.normal.unitOrthogonal(), other = tank.normal.cross(one),
+                  foot = -tank.e * tank.normal;
+      constexpr float kBeyond = 1.01F;
+      Polygon polygon;
+      for (const auto& [a, b] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}})
+        polygon.add(foot + kBeyond * (static_cast<float>(a) * one + static_cast<float>(b) * other));
+      for (std::size_t l = 0; l < tanks.size(); ++l)
+        if (l != k) clip(polygon, {tanks[l].normal, tanks[l].e});
+      if (!polygon.empty()) addPolygon(i, polygon, tank.normal, tank.e, 1, false, scratch, sample);
+    }
+  }
+
+  /// What is behind a part of a facet, as far as the half-spaces reach.
+  void addPiece(std::size_t i, const Facet& facet, const Polygon& polygon, Scratch& scratch,
+                GammaSample& sample) const {
+    const std::vector<HalfSpace>& tanks = scratch.tanks;
+    if (!addPolygon(i, polygon, facet.normal, facet.distance, 1, facet.open, scratch, sample)) return;
+    for (std::size_t k = 0; k < tanks.size(); ++k) {
+      Polygon seen = throughTo(polygon, facet, k, tanks);
+      if (!seen.empty())
+        addPolygon(i, seen, tanks[k].normal, tanks[k].e, facet.front() ? -1.0F : 1.0F, facet.open, scratch,
+                   sample);
+    }
+  }
+
+  /// What a point sees of a tank's plane through a polygon, where no other plane of the tank comes before.
+  static Polygon throughTo(const Polygon& polygon, const Facet& facet, std::size_t k,
+                           const std::vector<HalfSpace>& tanks) {
+    const HalfSpace& tank = tanks[k];
+    const float distance = std::max(tank.e, kRounding);
+    Polygon seen = polygon;
+    // Where the plane is within the support.
+    clip(seen, {-tank.normal, -distance * std::abs(facet.distance)});
+    for (std::size_t l = 0; l < tanks.size() && !seen.empty(); ++l) {
+      if (l == k) continue;
+      const Vec3f nearer = tanks[l].normal / std::max(tanks[l].e, kRounding) - tank.normal / distance;
+      if (const float length = nearer.norm(); length > 0) clip(seen, {nearer / length, 0});
+    }
+    for (int corner = 0; corner < seen.count; ++corner) {
+      Vec3f& y = seen.corners[static_cast<std::size_t>(corner)];
+      y *= distance / std::max(-tank.normal.dot(y), 1e-9F);
+    }
+    if (!facet.front()) std::reverse(seen.corners.begin(), seen.corners.begin() + seen.count);
+    return seen;
+  }
+
+  /// Adds `sign` times the integrals over a polygon in a plane at `distance` and, if `open`, over the sides
+  /// of the cone behind it. False where it is out of reach.
+  bool addPolygon(std::size_t i, const Polygon& polygon, const Vec3f& normal, float distance, float sign,
+                  bool open, Scratch& scratch, GammaSample& sample) const {
+    const float height = std::abs(distance), side = distance < 0 ? -sign : sign;
+    const std::size_t before = scratch.owners.size();
+    bool within = true;
+    for (int k = 0; k < polygon.count; ++k) {
+      const Vec3f &a = polygon.corner(k), way = polygon.corner(k + 1) - a;
+      const float length = way.norm();
+      if (length < 1e-7F) continue;
+      const Vec3f along = way / length, inwards = normal.cross(along);
+      const float inside = -a.dot(inwards), from = a.dot(along);
+      const float half2 = 1 - height * height - inside * inside;
+      if (inside < 0) {
+        within = false;
+        if (half2 <= 0) {
+          scratch.owners.resize(before);
+          scratch.edges.resize(before);
+          return false;
+        }
+      }
+      if (half2 <= 0) continue;
+      const float half = std::sqrt(half2);
+      const float start = std::max(from, -half), end = std::min(from + length, half);
+      if (start >= end) continue;
+      scratch.edges.push_back({height, inside, start, end});
+      scratch.owners.push_back({i, side, sign * normal});
+      if (!open) continue;
+      const float least = std::sqrt(1 - half2);
+      if (least < kRounding) continue;
+      scratch.edges.push_back({0, least, start, end});
+      scratch.owners.push_back({i, 0, sign / least * (distance * inwards - inside * normal)});
+    }
+    if (!within) return true;
+    sample.gamma -= side * (1 - Kernel::planeGamma(height));
+    sample.gradient += sign * Kernel::planeGammaSlope(height) * normal;
+    sample.pairGradient += sign * Pair::planeGammaSlope(height) * normal;
+    return true;
+  }
+
+  const Boundary& boundary_;
+  KernelType kernel_;
+  float support_;
+};
+
+}  // namespace
+
+std::unique_ptr<GammaMethod> makeFacetsGamma(const GammaContext& context) {
+  return withKernel(context.kernel, [&](auto kernel) -> std::unique_ptr<GammaMethod> {
+    return std::make_unique<FacetsGamma<decltype(kernel)>>(context);
+  });
+}
+
+}  // namespace migiwa
