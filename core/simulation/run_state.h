@@ -8,6 +8,7 @@
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/simulation/fill.h"
+#include "core/simulation/gauges.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/statistics.h"
 #include "core/solver/step.h"
@@ -35,6 +36,8 @@ struct Simulation::State {
   }
   /// What a picture says of the frame, but for wall times.
   void describeFrame();
+  /// Takes in what the gauges show now.
+  void readGauges();
 
   Scene scene;
   ThreadPool pool;
@@ -42,6 +45,7 @@ struct Simulation::State {
   StepState step;
   Emission emission;
   Outflow outflow;
+  GaugeReader gauges;
   PickedGamma gamma;
   EffectPipeline effects;
   RunStatistics statistics;

@@ -26,6 +26,14 @@ void Simulation::State::describeFrame() {
   step.pressure.pressures(step, pressure);
 }
 
+void Simulation::State::readGauges() {
+  const GaugedFluid fluid{step.particles.position, step.particles.velocity, pressure};
+  for (std::size_t k = 0; k < gauges.size(); ++k)
+    if (const auto value = gauges.read(k, fluid, gamma.method.get(), scene.solver.kernel,
+                                       static_cast<double>(step.supportRadius)))
+      statistics.gauges[k].add(time, *value);
+}
+
 /// Walls are where they end up, having been at their places of `before`.
 void Simulation::State::moveWalls(double before, double now) {
   boundary.moveTo(before, now);
@@ -216,6 +224,7 @@ void Simulation::advanceFrame() {
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
   state.describeFrame();
+  state.readGauges();
 }
 
 }  // namespace migiwa
