@@ -145,6 +145,14 @@ std::optional<double> GaugeReader::pressureAt(const Vec3d& at, double radius, co
   return std::max(0.0, (pressures - restDensity_ * gravity_.dot(offsets)) / weights);
 }
 
+std::vector<GaugeSample> GaugeSeries::few() const {
+  const std::size_t stride = history.size() / Thinning::kMostSamples + 1;
+  std::vector<GaugeSample> samples;
+  for (std::size_t k = history.empty() ? 0 : (history.size() - 1) % stride; k < history.size(); k += stride)
+    samples.push_back(history[k]);
+  return samples;
+}
+
 void GaugeSeries::visit(StateVisitor& visitor, const std::string& name) {
   visitor.array(name.substr(1), history);
   thinning.visit(visitor, name);

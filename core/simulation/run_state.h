@@ -38,6 +38,7 @@ struct Simulation::State {
   void describeFrame();
   /// Takes in what the gauges show now.
   void readGauges();
+  void describeGauges();
 
   Scene scene;
   ThreadPool pool;

@@ -250,6 +250,7 @@ void Simulation::visitState(StateVisitor& visitor) {
   state.savedNeighbours = std::move(neighbours);
   state.step.pressure.clear();
   state.describeFrame();
+  state.describeGauges();
   // Where walls are follows from the time.
   if (state.boundary.moves()) state.moveWalls(state.time, state.time);
   state.health = inspect(state.step, state.limits);

@@ -90,6 +90,8 @@ struct GaugeSeries {
   Thinning thinning{kMostSamples};
 
   void add(double time, double value) { thinning.add(history, GaugeSample{time, value}); }
+  /// As few of the samples as a picture needs, the last one among them.
+  std::vector<GaugeSample> few() const;
   /// For a save; `name` such as "/gauges/0".
   void visit(StateVisitor& visitor, const std::string& name);
 };

@@ -32,6 +32,14 @@ void Simulation::State::readGauges() {
     if (const auto value = gauges.read(k, fluid, gamma.method.get(), scene.solver.kernel,
                                        static_cast<double>(step.supportRadius)))
       statistics.gauges[k].add(time, *value);
+  describeGauges();
+}
+
+void Simulation::State::describeGauges() {
+  info.gauges.clear();
+  for (std::size_t k = 0; k < statistics.gauges.size(); ++k)
+    info.gauges.push_back(
+        {scene.gauges[k].name, std::string(scene.gauges[k].unit()), statistics.gauges[k].few()});
 }
 
 /// Walls are where they end up, having been at their places of `before`.
