@@ -34,6 +34,7 @@ class GaugeReader {
   GaugeReader(const Scene& scene, const Boundary& boundary);
 
   bool readsPressure() const;
+  bool isPressure(std::size_t k) const { return gauges_[k].kind == GaugeKind::pressure; }
   std::size_t size() const { return gauges_.size(); }
   /// What gauge k shows; null where there is nothing to measure. `gamma` is that of the run; null: none.
   std::optional<double> read(std::size_t k, const GaugedFluid& fluid, const GammaMethod* gamma,

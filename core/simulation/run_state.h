@@ -36,8 +36,10 @@ struct Simulation::State {
   }
   /// What a picture says of the frame, but for wall times.
   void describeFrame();
-  /// Takes in what the gauges show now.
+  /// Takes in what the gauges show now, and of pressures the mean over the substeps of the frame.
   void readGauges();
+  /// A substep of `dt` (s) has been taken: adds its pressures to those of the frame.
+  void sumPressures(double dt);
   void describeGauges();
 
   Scene scene;
@@ -47,6 +49,7 @@ struct Simulation::State {
   Emission emission;
   Outflow outflow;
   GaugeReader gauges;
+  std::vector<double> pressureSums;  ///< of each gauge over the frame so far (Pa s)
   PickedGamma gamma;
   EffectPipeline effects;
   RunStatistics statistics;

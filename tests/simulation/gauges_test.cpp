@@ -146,6 +146,25 @@ TEST(Gauges, OnTheFloorOfARestingTankShowRhoGDepth) {
   EXPECT_NEAR(height, 0.8, 0.015);
 }
 
+// The column stands on the floor, however many substeps a frame has.
+TEST(Gauges, PressureIsTheMeanOverTheSubstepsOfAFrame) {
+  Scene scene = gaugedTank();
+  scene.solver.timeStep = 0.02;
+  scene.solver.substeps = 4;
+  Simulation simulation(scene, 1);
+  while (simulation.time() < 2) simulation.advanceFrame();
+  const std::vector<GaugeSample>& shown = simulation.statistics().gauges[0].history;
+  ASSERT_EQ(shown.size(), 100u);
+  double mean = 0, squares = 0;
+  for (auto sample = shown.end() - 25; sample != shown.end(); ++sample) {
+    mean += sample->value / 25;
+    squares += sample->value * sample->value / 25;
+  }
+  EXPECT_NEAR(mean, kPerMetre * 0.8, 0.06 * kPerMetre * 0.8);
+  // Single substeps scatter by a quarter and more.
+  EXPECT_LT(std::sqrt(std::max(squares - mean * mean, 0.0)), 0.1 * mean);
+}
+
 TEST(Gauges, ChangeNothingAndAreKeptInASave) {
   Scene plain = gaugedTank();
   plain.gauges.clear();
