@@ -86,7 +86,7 @@ TruthFindings piston(const TruthRun& run) {
           {{"Piston", "level (m)", height, along(height, level)}}};
 }
 
-TruthFindings vortex(const TruthRun& run, double rate) {
+TruthFindings vortex(const TruthRun& run, const char* title, double rate) {
   const Series speed = run.gauge("speed");
   const double start = speed.empty() ? 0 : speed.values.front();
   const auto kept = [&](double t) { return start * std::exp(-rate * t); };
@@ -96,16 +96,16 @@ TruthFindings vortex(const TruthRun& run, double rate) {
     answers.push_back({"speed kept after " + std::string(t < 1 ? "0.5" : "1") + " s", kept(t) / start,
                        now ? std::optional(*now / start) : std::nullopt});
   }
-  return {answers, {{"Vortex in a box", "rms speed (m/s)", speed, along(speed, kept)}}};
+  return {answers, {{title, "rms speed (m/s)", speed, along(speed, kept)}}};
 }
 
 TruthFindings inviscidVortex(const TruthRun& run) {
-  return vortex(run, 0);
+  return vortex(run, "Vortex in a box", 0);
 }
 
 /// Taylor and Green 1937: exp(-2 nu k^2 t).
 TruthFindings viscousVortex(const TruthRun& run) {
-  return vortex(run, 2 * 0.02 * kPi * kPi);
+  return vortex(run, "Vortex in a box of oil", 2 * 0.02 * kPi * kPi);
 }
 
 TruthFindings bucket(const TruthRun& run) {

@@ -121,10 +121,7 @@ TruthFindings restingDrops(const TruthRun& run) {
            {"width of the small drop (m)", 2 * kDropRadius, meanBetween(run.gauge("width"), 0.5 * end, end)},
            {"rms speed (m/s)", 0, meanBetween(run.gauge("speed"), 0.9 * end, end),
             std::sqrt(kTension / (1000 * kDropRadius))}},
-          {{"Two resting drops",
-            "pressure in the small one less that in the large one (Pa)",
-            more,
-            {{0, end}, {known, known}}}}};
+          {{"Two resting drops", "more pressure in the small one (Pa)", more, {{0, end}, {known, known}}}}};
 }
 
 }  // namespace
