@@ -241,8 +241,8 @@ int runCommandLine(std::vector<std::string> arguments) {
 }
 
 std::vector<Command> allCommands() {
-  return {viewCommand(),    renderCommand(), simulateCommand(), checkCommand(), gammaCommand(),
-          summaryCommand(), slimCommand(),   studyCommand(),    schemaCommand()};
+  return {viewCommand(),    renderCommand(), simulateCommand(), checkCommand(),  gammaCommand(),
+          summaryCommand(), slimCommand(),   studyCommand(),    schemaCommand(), truthCommand()};
 }
 
 }  // namespace migiwa

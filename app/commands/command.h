@@ -73,6 +73,7 @@ Command summaryCommand();
 Command slimCommand();
 Command studyCommand();
 Command schemaCommand();
+Command truthCommand();
 
 // Option values that are lists or pairs, read from their text. Faults name the option.
 

@@ -23,7 +23,7 @@ namespace migiwa {
 struct SimulateOptions {
   std::string scene;
   std::optional<double> until;  ///< (s)
-  std::string report;
+  std::string report, gauges;
   std::string exportFolder, format, fields;
   std::optional<double> every;  ///< (s)
   std::string save, resume;
@@ -149,6 +149,7 @@ class SimulateRun {
 
   int report(const SettledMeasures& settled) {
     const Report report = makeReport(simulation_, settled, common_.overrides);
+    if (!options_.gauges.empty()) writeTextFile(options_.gauges, gaugesCsv(report));
     if (options_.report.empty()) {
       std::cout << reportTable({report});
     } else {
@@ -195,6 +196,10 @@ std::vector<Option> ownOptions(SimulateOptions& options) {
        .target = &options.report,
        .value = "FILE",
        .help = "Writes a report there; left out: prints a short one."},
+      {.name = "--gauges",
+       .target = &options.gauges,
+       .value = "FILE",
+       .help = "Writes what the gauges of the scene show over time there, as CSV."},
       {.name = "--export",
        .target = &options.exportFolder,
        .value = "DIR",
@@ -263,6 +268,8 @@ class JobReader {
     if (scene && options_.until && Range::closed(0, kLongestRun).contains(*options_.until))
       collect([&] { requireReachable(*scene, *options_.until, "--until"); });
     writable("--report", options_.report);
+    writable("--gauges", options_.gauges);
+    needs("--gauges", !options_.gauges.empty(), "gauges in the scene", !scene || !scene->gauges.empty());
     readExport(scene ? scene->stem() : "");
     seconds("--save-every", options_.saveEvery, Range::positive(kLongestRun));
     needs("--save-every", options_.saveEvery.has_value(), "--save FILE", !options_.save.empty());

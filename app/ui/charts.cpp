@@ -104,7 +104,8 @@ void costChart(std::span<const WhatIfPoint> points, float height) {
 
 namespace {
 
-struct EnergyRange {
+/// Of the values of a plot.
+struct ValueRange {
   double low = 0, high = 0;
   void include(double value) {
     if (!std::isfinite(value)) return;
@@ -116,54 +117,82 @@ void polyline(ImDrawList* draw, const std::vector<ImVec2>& points, ImU32 color) 
   draw->AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, 1.5F);
 }
 
+/// Values over the time from 0 to `last` (s): draws the axes, and says where curves go.
+class TimePlot {
+ public:
+  TimePlot(const ImVec2& corner, float width, float height, ValueRange range, double last)
+      : range_(range), last_(std::max(last, 1e-9)) {
+    const float size = ImGui::GetFontSize();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    if (range_.high - range_.low <= 0) range_.high = range_.low + 1;
+    const double room = 0.06 * (range_.high - range_.low);
+    range_.low -= room, range_.high += room;
+    const Ticks ticks = roundTicks(range_.low, range_.high, 3);
+    const std::string format = "%." + std::to_string(ticks.decimals) + "f";
+    float labels = 0;
+    for (const double v : ticks.values)
+      labels = std::max(labels, ImGui::CalcTextSize(formatNumber(format.c_str(), v).c_str()).x);
+    low_ = {std::round(corner.x + labels + 0.5F * size), corner.y + height - std::round(1.25F * size)};
+    high_ = {corner.x + width - std::round(0.5F * size), corner.y + std::round(0.5F * size)};
+    draw->AddRectFilled({low_.x, high_.y}, {high_.x, low_.y}, theme::kWell, 3);
+    for (const double v : ticks.values) {
+      gridLine(draw, low_.x, high_.x, std::round(at(0, v).y), formatNumber(format.c_str(), v));
+    }
+    const std::string end = formatNumber("%.2f s", last);
+    draw->AddText({low_.x, low_.y + 2}, faint, "0 s");
+    draw->AddText({std::round(high_.x - ImGui::CalcTextSize(end.c_str()).x), low_.y + 2}, faint, end.c_str());
+  }
+
+  ImVec2 at(double time, double value) const {
+    return {
+        low_.x + (high_.x - low_.x) * static_cast<float>(time / last_),
+        low_.y + (high_.y - low_.y) * static_cast<float>((value - range_.low) / (range_.high - range_.low))};
+  }
+
+ private:
+  ValueRange range_;
+  double last_;
+  ImVec2 low_, high_;
+};
+
 }  // namespace
 
+void gaugePlot(std::span<const GaugeSample> samples, float height) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::Dummy({width, height});
+  if (samples.empty()) return;
+  ValueRange range{samples.front().value, samples.front().value};
+  for (const GaugeSample& one : samples) range.include(one.value);
+  const TimePlot plot(corner, width, height, range, samples.back().time);
+  std::vector<ImVec2> points;
+  for (const GaugeSample& one : samples)
+    if (std::isfinite(one.value)) points.push_back(plot.at(one.time, one.value));
+  polyline(ImGui::GetWindowDrawList(), points, theme::kAccent);
+}
+
 void energyPlot(std::span<const EnergySample> samples, float height) {
-  const float size = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+  const float width = ImGui::GetContentRegionAvail().x;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, height});
   if (samples.empty()) return;
   ImDrawList* draw = ImGui::GetWindowDrawList();
-  const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
 
   const double start = samples.front().source;
-  EnergyRange range;
+  ValueRange range;
   for (const EnergySample& at : samples) {
     range.include(at.kinetic);
     range.include(at.kinetic + at.potential - start);
     range.include(at.source - start);
   }
-  if (range.high - range.low <= 0) range.high = 1;
-  const double room = 0.06 * (range.high - range.low);
-  range.low -= room, range.high += room;
-  const Ticks ticks = roundTicks(range.low, range.high, 3);
-  const std::string format = "%." + std::to_string(ticks.decimals) + "f";
-  float labels = 0;
-  for (const double v : ticks.values)
-    labels = std::max(labels, ImGui::CalcTextSize(formatNumber(format.c_str(), v).c_str()).x);
-
-  const ImVec2 low{std::round(corner.x + labels + 0.5F * size), corner.y + height - std::round(1.25F * size)};
-  const ImVec2 high{corner.x + width - std::round(0.5F * size), corner.y + std::round(0.5F * size)};
-  const double last = std::max(samples.back().time, 1e-9);
-  const auto at = [&](double time, double value) {
-    return ImVec2{
-        low.x + (high.x - low.x) * static_cast<float>(time / last),
-        low.y + (high.y - low.y) * static_cast<float>((value - range.low) / (range.high - range.low))};
-  };
-  draw->AddRectFilled({low.x, high.y}, {high.x, low.y}, theme::kWell, 3);
-  for (const double v : ticks.values) {
-    gridLine(draw, low.x, high.x, std::round(at(0, v).y), formatNumber(format.c_str(), v));
-  }
-  const std::string end = formatNumber("%.2f s", samples.back().time);
-  draw->AddText({low.x, low.y + 2}, faint, "0 s");
-  draw->AddText({std::round(high.x - ImGui::CalcTextSize(end.c_str()).x), low.y + 2}, faint, end.c_str());
-
+  const TimePlot plot(corner, width, height, range, samples.back().time);
   std::vector<ImVec2> kinetic, whole, given;
   for (const EnergySample& one : samples) {
     if (!std::isfinite(one.kinetic + one.potential)) continue;
-    kinetic.push_back(at(one.time, one.kinetic));
-    whole.push_back(at(one.time, one.kinetic + one.potential - start));
-    given.push_back(at(one.time, one.source - start));
+    kinetic.push_back(plot.at(one.time, one.kinetic));
+    whole.push_back(plot.at(one.time, one.kinetic + one.potential - start));
+    given.push_back(plot.at(one.time, one.source - start));
   }
   polyline(draw, given, theme::kAlert);
   polyline(draw, kinetic, theme::kMotion);

@@ -278,6 +278,18 @@ void energyPanel(PanelModel& model) {
   energyPlot(model.frame.energy, std::floor(7 * ImGui::GetFontSize()));
 }
 
+void gaugesPanel(PanelModel& model) {
+  for (const GaugeTrace& gauge : model.frame.gauges) {
+    rowLabel(gauge.name.c_str());
+    if (gauge.samples.empty()) {
+      faintText("nothing yet");
+      continue;
+    }
+    ImGui::TextUnformatted((formatNumber("%.4g ", gauge.samples.back().value) + gauge.unit).c_str());
+    gaugePlot(gauge.samples, std::floor(5 * ImGui::GetFontSize()));
+  }
+}
+
 void performancePanel(PanelModel& model) {
   rowLabel("ms per step");
   ImGui::TextUnformatted(milliseconds(model.frame.stepSeconds, model.timings).c_str());

@@ -161,6 +161,7 @@ void Ui::panels(PanelModel& model, int height) {
   }
   section("View", lines > 33, bold, model, viewPanel);
   section("Energy", lines > 58, bold, model, energyPanel);
+  if (!model.frame.gauges.empty()) section("Gauges", true, bold, model, gaugesPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
   if (model.whatIf != nullptr) section("What if", lines > 60, bold, model, whatIfPanel);
   ImGui::End();

@@ -56,6 +56,7 @@ void whatIfPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
 /// Energies over the run, against what was given.
 void energyPanel(PanelModel& model);
+void gaugesPanel(PanelModel& model);
 
 // The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
 
@@ -102,6 +103,9 @@ void costChart(std::span<const WhatIfPoint> points, float height);
 /// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
 /// Heights count from the energy of the start.
 void energyPlot(std::span<const EnergySample> samples, float height);
+
+/// The same for what a gauge has shown.
+void gaugePlot(std::span<const GaugeSample> samples, float height);
 
 // How the density error falls from iteration to iteration of the last step.
 

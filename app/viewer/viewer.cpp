@@ -229,7 +229,7 @@ std::optional<Vec3d> Viewer::pointAt(int x, int y, const Rect& area) const {
 double referenceSpeed(const Scene& scene) {
   const Vec3d size = scene.bounds().size();
   double speed = std::sqrt(2 * scene.gravity.cwiseAbs().dot(size));
-  for (const auto& source : scene.fluid) speed = std::max(speed, source->velocity.norm());
+  for (const auto& source : scene.fluid) speed = std::max(speed, source->largestSpeed());
   for (const Emitter& emitter : scene.emitters) speed = std::max(speed, emitter.mouthSpeed());
   if (!(speed > 0) || !std::isfinite(speed)) return 1;
   const double digit = std::pow(10, std::floor(std::log10(speed)));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/base/files.h"
 #include "core/base/hash.h"
@@ -45,6 +46,7 @@ void visitReport(SomeReport& report, const Visit& visit) {
   visit("/drained/particles", report.drainedParticles);
   visit("/drained/volume", report.drainedVolume);
   visit("/drained/drains", report.drains);
+  visit("/gauges", report.gauges);
   visit("/max_penetration", report.maxPenetration);
   visit("/max_speed", report.maxSpeed);
   visit("/peak_memory_bytes", report.peakMemoryBytes);
@@ -95,6 +97,17 @@ Json toJson(const std::vector<DrainReport>& drains) {
                      {"volume", toJson(drain.volume)},
                      {"times", drain.times},
                      {"volumes", drain.volumes}});
+  return array;
+}
+
+Json toJson(const std::vector<GaugeReport>& gauges) {
+  Json array = Json::array();
+  for (const GaugeReport& gauge : gauges)
+    array.push_back({{"name", gauge.name},
+                     {"kind", gauge.kind},
+                     {"unit", gauge.unit},
+                     {"times", gauge.times},
+                     {"values", gauge.values}});
   return array;
 }
 
@@ -183,6 +196,22 @@ class MemberReader {
       }
     }
   }
+  void operator()(const char* pointer, std::vector<GaugeReport>& value) const {
+    const Json* const found = find(pointer);
+    if (found == nullptr) return;
+    if (!found->is_array()) return wrong(pointer, "an array of objects", *found);
+    for (std::size_t k = 0; k < found->size(); ++k) {
+      const Json& entry = (*found)[k];
+      GaugeReport gauge;
+      if (take(entry, "name", gauge.name) && take(entry, "kind", gauge.kind) &&
+          take(entry, "unit", gauge.unit) && take(entry, "times", gauge.times) &&
+          take(entry, "values", gauge.values)) {
+        value.push_back(std::move(gauge));
+      } else {
+        wrong(childPointer(pointer, k), "an object with name, kind, unit, times and values", entry);
+      }
+    }
+  }
 
  private:
   /// Null where the key is missing or null itself.
@@ -231,6 +260,25 @@ std::string reportText(const Report& report) {
     root[Json::json_pointer(pointer)] = toJson(value);
   });
   return prettyJson(root);
+}
+
+std::string gaugesCsv(const Report& report) {
+  std::string text = "time (s)";
+  std::map<double, std::vector<Measure>> rows;
+  const std::size_t columns = report.gauges.size();
+  for (std::size_t k = 0; k < columns; ++k) {
+    const GaugeReport& gauge = report.gauges[k];
+    text += "," + gauge.name + " (" + gauge.unit + ")";
+    for (std::size_t row = 0; row < gauge.times.size(); ++row)
+      rows.try_emplace(gauge.times[row], columns).first->second[k] = gauge.values[row];
+  }
+  text += '\n';
+  for (const auto& [time, values] : rows) {
+    text += formatNumber("%.9g", time);
+    for (const Measure& value : values) text += "," + (value ? formatNumber("%.9g", *value) : "");
+    text += '\n';
+  }
+  return text;
 }
 
 Report readReport(const std::filesystem::path& file) {
@@ -288,6 +336,21 @@ void reportFluid(const FluidBalance& fluid, double volume, Report& report) {
       taken.volumes.push_back(volumeOf(sample.particles));
     }
   }
+}
+
+std::vector<GaugeReport> reportGauges(const std::vector<Gauge>& gauges,
+                                      const std::vector<GaugeSeries>& series) {
+  std::vector<GaugeReport> reports;
+  for (std::size_t k = 0; k < std::min(gauges.size(), series.size()); ++k) {
+    const auto kind = static_cast<std::size_t>(gauges[k].kind);
+    GaugeReport& own = reports.emplace_back(GaugeReport{
+        gauges[k].name, std::string(kGaugeKindNames[kind]), std::string(gauges[k].unit()), {}, {}});
+    for (const GaugeSample& sample : series[k].history) {
+      own.times.push_back(sample.time);
+      own.values.push_back(sample.value);
+    }
+  }
+  return reports;
 }
 
 /// The value that a fraction `q` of all values does not exceed (nearest rank).
@@ -353,6 +416,7 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   const double volume = spacing * spacing * spacing;
   reportFluid(run.fluid, volume, report);
   reportEnergy(run.energy, simulation.settings().solver.restDensity * volume, report);
+  report.gauges = reportGauges(simulation.scene().gauges, run.gauges);
   report.trouble = run.trouble;
   report.settled = settled;
   return report;

@@ -27,6 +27,12 @@ struct DrainReport {
   std::vector<double> times, volumes;  ///< taken by that time (s, m^3)
 };
 
+/// What a gauge has shown over time.
+struct GaugeReport {
+  std::string name, kind, unit;
+  std::vector<double> times, values;  ///< (s, unit)
+};
+
 struct Report {
   std::string scene;                   ///< the scene file as it was given
   std::vector<std::string> overrides;  ///< `/json/pointer=VALUE`, in order
@@ -42,6 +48,7 @@ struct Report {
   /// started + emitted = particles + left + drained; the lost ones are among the particles.
   Measure startedParticles, emittedParticles, leftParticles, leftVolume, drainedParticles, drainedVolume;
   std::vector<DrainReport> drains;  ///< in the order of the scene
+  std::vector<GaugeReport> gauges;  ///< in the order of the scene
   Measure maxPenetration;           ///< (m)
   Measure maxSpeed;                 ///< (m/s)
   Measure peakMemoryBytes;          ///< of the whole program
@@ -59,6 +66,10 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
                   const std::vector<Override>& overrides);
 
 std::string reportText(const Report& report);
+
+/// The gauges as CSV: a row for each time, a column `NAME (UNIT)` for each gauge, empty where it had nothing
+/// to measure.
+std::string gaugesCsv(const Report& report);
 
 /// Throws InputError with every fault. Keys that a report does not have are null, so that old reports stay
 /// readable.

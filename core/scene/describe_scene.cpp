@@ -17,7 +17,7 @@ template <class Visitor>
 void describeFluid(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   const bool spacingKnown = visitor.valid({"particle_spacing"});
   const auto more = [&](auto& fields, auto& source) {
-    fields.vector("velocity", source.velocity, {"m/s", "Velocity at the start."});
+    FluidSource::describeMotion(fields, source);
     fields.boolean("trim", source.trim,
                    {"",
                     "Leave out particles less than half a spacing inside the fluid side of a wall, or nearer "
@@ -61,6 +61,30 @@ void describeDrains(Visitor& visitor, Visited<Visitor, Scene>& scene) {
                    drains[at].describe(fields, spacing);
                  } else {
                    drains[at].describe(fields);
+                 }
+               });
+}
+
+template <class Visitor>
+void describeGauges(Visitor& visitor, Visited<Visitor, Scene>& scene) {
+  auto& gauges = scene.gauges;
+  visitor.list("gauges", gauges.size(), {"", "What is measured over time, for the report and as series."},
+               [&](auto& fields, std::size_t at) {
+                 if constexpr (Visitor::kChanges) {
+                   if (at >= gauges.size()) gauges.emplace_back();
+                   Gauge& gauge = gauges[at];
+                   gauge.describe(fields, at);
+                   const auto walls = static_cast<int>(scene.surfaces.size());
+                   if (gauge.wall >= walls && fields.valid({"wall"}))
+                     fields.fault("wall", "expected the number of one of the " + std::to_string(walls) +
+                                              " surfaces, counted from 0, found " +
+                                              std::to_string(gauge.wall));
+                   for (std::size_t before = 0; before < at; ++before)
+                     if (gauges[before].name == gauge.name)
+                       fields.fault("name", "expected a name that no other gauge has, found that of gauges/" +
+                                                std::to_string(before));
+                 } else {
+                   gauges[at].describe(fields);
                  }
                });
 }
@@ -269,6 +293,7 @@ bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   if constexpr (Visitor::kChanges) warnOfFluidOutside(visitor, scene);
   visitor.object("boundary", {"", "The walls and how the density is corrected at them."},
                  [&](auto& fields) { describeBoundary(fields, scene); });
+  describeGauges(visitor, scene);
   visitor.object("solver", {"", "The constraint solver."},
                  [&](auto& fields) { describeSolver(fields, scene.solver); });
   visitor.object("effects",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/scene/drain.h"
+#include "core/scene/gauge.h"
 #include "core/scene/sources.h"
 #include "core/solver/effect.h"
 #include "core/solver/parameters.h"
@@ -80,6 +81,7 @@ struct Scene {
   std::vector<std::shared_ptr<const FluidSource>> fluid;
   std::vector<Emitter> emitters;
   std::vector<Drain> drains;
+  std::vector<Gauge> gauges;
   Domain domain;
   std::vector<std::shared_ptr<const Surface>> surfaces;
   BoundaryParameters boundary;

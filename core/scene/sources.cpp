@@ -29,6 +29,7 @@ constexpr std::array kSources{
     Entry{"box", make<BoxSource>},
     Entry{"sphere", make<SphereSource>},
     Entry{"mesh", make<MeshSource>},
+    Entry{"wave", make<WaveSource>},
 };
 
 }  // namespace
@@ -39,6 +40,66 @@ std::span<const std::string_view> fluidShapes() {
 
 std::unique_ptr<FluidSource> makeFluidSource(int shape) {
   return kSources.at(static_cast<std::size_t>(shape)).make();
+}
+
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+template <class Visitor>
+void describeVelocityWave(Visitor& visitor, Visited<Visitor, VelocityWave>& wave) {
+  if constexpr (Visitor::kChanges) wave.point = Vec3d::Zero() - visitor.origin();
+  visitor.vector("velocity", wave.velocity, {"m/s", "On a crest.", Presence::required});
+  visitor.vector("wave", wave.wave,
+                 {"1/m", "Wave vector: 2 pi over the wavelength, across the crests.", Presence::required});
+  visitor.place("point", wave.point, {"m", "On a crest."});
+}
+
+}  // namespace
+
+template <class Visitor>
+void FluidSource::describeMotion(Visitor& visitor, Visited<Visitor, FluidSource>& self) {
+  visitor.vector("velocity", self.velocity, {"m/s", "Velocity at the start."});
+  visitor.object(
+      "angular_velocity", {"", "A rigid turn at the start, added to the velocity."},
+      [&](auto& fields) {
+        if constexpr (Visitor::kChanges) self.spin.point = Vec3d::Zero() - fields.origin();
+        fields.vector("axis", self.spin.axis, {"1", "Any length but zero.", Presence::required});
+        fields.place("point", self.spin.point, {"m", "On the axis."});
+        fields.number("degrees_per_second", self.spin.degreesPerSecond, Range::closed(-1e6, 1e6),
+                      {"degrees/s", "Right-handed.", Presence::required});
+        if (fields.valid({"axis"}) && self.spin.axis.norm() < 1e-12)
+          fields.fault("axis", "expected a vector that is not zero, found [0, 0, 0]");
+      },
+      &self.spin.given);
+  visitor.list(
+      "velocity_waves", self.velocityWaves.size(),
+      {"", "Waves of the velocity at the start, velocity * cos(wave . (x - point)), added to the velocity."},
+      [&](auto& fields, std::size_t at) {
+        if constexpr (Visitor::kChanges)
+          if (at >= self.velocityWaves.size()) self.velocityWaves.emplace_back();
+        describeVelocityWave(fields, self.velocityWaves[at]);
+      });
+}
+template void FluidSource::describeMotion(FieldVisitor&, FluidSource&);
+template void FluidSource::describeMotion(FieldWriter&, const FluidSource&);
+
+Vec3d FluidSource::velocityAt(const Vec3d& p) const {
+  Vec3d sum = velocity + ownVelocity(p);
+  if (spin.given) sum += kRadians * spin.degreesPerSecond * spin.axis.normalized().cross(p - spin.point);
+  for (const VelocityWave& own : velocityWaves)
+    sum += portable::cos(own.wave.dot(p - own.point)) * own.velocity;
+  return sum;
+}
+
+double FluidSource::largestSpeed() const {
+  double speed = velocity.norm() + ownSpeed();
+  for (const VelocityWave& own : velocityWaves) speed += own.velocity.norm();
+  if (const Bounds all = bounds(); spin.given && !all.empty()) {
+    const Vec3d farthest = (all.center() - spin.point).cwiseAbs() + 0.5 * all.size();
+    speed += kRadians * std::abs(spin.degreesPerSecond) * farthest.norm();
+  }
+  return speed;
 }
 
 BoxSource::BoxSource(const Vec3d& min, const Vec3d& max, const Rotation& rotation)

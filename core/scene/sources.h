@@ -15,6 +15,23 @@
 
 namespace migiwa {
 
+// How fluid moves at the start. A turn and waves add to the source's velocity.
+
+/// A rigid turn about an axis.
+struct Spin {
+  bool given = false;
+  Vec3d axis = Vec3d::UnitY();  ///< any length but zero
+  Vec3d point = Vec3d::Zero();  ///< on the axis (unit: m)
+  double degreesPerSecond = 0;  ///< right-handed (unit: degrees/s)
+};
+
+/// velocity * cos(wave . (x - point)).
+struct VelocityWave {
+  Vec3d velocity = Vec3d::Zero();  ///< (unit: m/s)
+  Vec3d wave = Vec3d::Zero();      ///< wave vector: 2 pi over the wavelength (unit: 1/m)
+  Vec3d point = Vec3d::Zero();     ///< on a crest (unit: m)
+};
+
 // A region that is filled with fluid at the start. A source is one file that implements this interface and
 // one line in core/scene/sources.cpp.
 
@@ -38,11 +55,26 @@ class FluidSource {
   /// Lengths (m) that stay empty because no whole cell has room there, along the axes of its lattice.
   virtual Vec3d leftOver(double /*spacing*/) const { return Vec3d::Zero(); }
 
+  /// Visits the fields of how the fluid moves at the start.
+  template <class Visitor>
+  static void describeMotion(Visitor& visitor, Visited<Visitor, FluidSource>& self);
+  /// Velocity (m/s) of the fluid at p at the start.
+  Vec3d velocityAt(const Vec3d& p) const;
+  /// A bound for the speed (m/s) of all of the fluid at the start.
+  double largestSpeed() const;
+
   /// Fields that every source has.
   Vec3d velocity = Vec3d::Zero();  ///< initial velocity (unit: m/s)
+  Spin spin;
+  std::vector<VelocityWave> velocityWaves;
   /// Leave out centres that are less than half a spacing inside the fluid side, and those that are nearer
   /// than 0.9 spacings to a particle of an earlier source.
   bool trim = true;
+
+ protected:
+  /// What the shape itself adds to the velocity (m/s) at p, and a bound for its length.
+  virtual Vec3d ownVelocity(const Vec3d& /*p*/) const { return Vec3d::Zero(); }
+  virtual double ownSpeed() const { return 0; }
 };
 
 /// Names for the scene's "shape" key, in the order of makeFluidSource's index.
@@ -127,6 +159,44 @@ class SphereSource final : public FluidSource {
   static void fields(Visitor& visitor, Visited<Visitor, SphereSource>& self);
   Vec3d center_ = Vec3d::Zero();
   double radius_ = 1;
+};
+
+// An upright box of water whose surface is not level.
+
+enum class WaveForm { cosine, solitary };
+inline constexpr std::array<std::string_view, 2> kWaveFormNames{"cosine", "solitary"};
+
+/// Water over the floor min.y up to the still level max.y plus eta(x); y points up. With d = max.y - min.y,
+/// X = x - crest and the height H:
+///   cosine    eta = H cos(2 pi X / wavelength)
+///   solitary  eta = H sech^2(sqrt(3 H / (4 d^3)) X) (Boussinesq 1872), which travels at sqrt(g (d + H))
+/// A form that travels along x at the speed c without changing has, by continuity, the mean velocity
+/// u = c eta / (d + eta) over the depth, and at the height y over the floor v = -y du/dx. The lattice is that
+/// of the box, and holds the cells whose centres are below the surface.
+class WaveSource final : public FluidSource {
+ public:
+  void describe(FieldVisitor& visitor) override;
+  void describe(FieldWriter& visitor) const override;
+  double count(double spacing) const override;
+  void fill(double spacing, std::vector<Vec3d>& out) const override;
+  Bounds bounds() const override;
+
+ protected:
+  Vec3d ownVelocity(const Vec3d& p) const override;
+  double ownSpeed() const override;
+
+ private:
+  struct Surface {
+    double eta, slope;  ///< (m, 1)
+  };
+  template <class Visitor>
+  static void fields(Visitor& visitor, Visited<Visitor, WaveSource>& self);
+  Surface surfaceAt(double x) const;
+
+  Vec3d min_ = Vec3d::Zero(), max_ = Vec3d::Ones();  ///< (m)
+  WaveForm form_ = WaveForm::cosine;
+  double height_ = 0.1, wavelength_ = 1, crest_ = 0;  ///< (m)
+  double speed_ = 0;                                  ///< (m/s)
 };
 
 // The inside of a closed mesh, full of fluid: the union of its parts, less those within others that face

@@ -137,7 +137,7 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
         ++inOthers;
       } else {
         particles.position.emplace_back(p);
-        particles.velocity.emplace_back(Vec3f(source.velocity.cast<float>()));
+        particles.velocity.emplace_back(Vec3f(source.velocityAt(p.cast<double>()).cast<float>()));
         particles.id.push_back(static_cast<std::uint32_t>(particles.size()));
         own.bounds.include(p.cast<double>());
       }

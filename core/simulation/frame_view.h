@@ -17,6 +17,12 @@
 
 namespace migiwa {
 
+/// What a gauge has shown so far, thinned for a picture.
+struct GaugeTrace {
+  std::string name, unit;
+  std::vector<GaugeSample> samples;
+};
+
 struct FrameInfo {
   double time = 0;          ///< simulated (s)
   long steps = 0;           ///< substeps so far
@@ -29,6 +35,7 @@ struct FrameInfo {
   double stepSeconds = 0;              ///< wall time of the last frame's mean substep
   std::uint64_t stateHash = 0;
   std::vector<EnergySample> energy;  ///< over the run so far
+  std::vector<GaugeTrace> gauges;    ///< in the order of the scene
 };
 
 struct FrameView {

@@ -8,6 +8,7 @@
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/simulation/fill.h"
+#include "core/simulation/gauges.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/statistics.h"
 #include "core/solver/step.h"
@@ -35,6 +36,11 @@ struct Simulation::State {
   }
   /// What a picture says of the frame, but for wall times.
   void describeFrame();
+  /// Takes in what the gauges show now, and of pressures the mean over the substeps of the frame.
+  void readGauges();
+  /// A substep of `dt` (s) has been taken: adds its pressures to those of the frame.
+  void sumPressures(double dt);
+  void describeGauges();
 
   Scene scene;
   ThreadPool pool;
@@ -42,6 +48,8 @@ struct Simulation::State {
   StepState step;
   Emission emission;
   Outflow outflow;
+  GaugeReader gauges;
+  std::vector<double> pressureSums;  ///< of each gauge over the frame so far (Pa s)
   PickedGamma gamma;
   EffectPipeline effects;
   RunStatistics statistics;

@@ -51,7 +51,8 @@ Simulation::State::State(Scene theScene, int threads, Guards guards)
       boundary(wallsOf(scene, pool)),
       step(pool, boundary),
       emission(scene, boundary),
-      outflow(scene) {
+      outflow(scene),
+      gauges(scene, boundary) {
   step.guards = guards == Guards::on;
 }
 
@@ -123,7 +124,8 @@ Simulation::Simulation(Scene scene, int threads, Guards guards)
   state.statistics.fluid.drains.resize(state.scene.drains.size());
   activity.reset();
   state.configure(settings());
-  state.step.pressure.watch(state.scene.view.color == ColorField::pressure);
+  state.statistics.gauges.resize(state.gauges.size());
+  watchPressure(state.scene.view.color == ColorField::pressure);
   // The reader has asked before there were grids of the walls.
   requireMemory(kBytesPerParticle * static_cast<double>(state.step.particles.size()), "particles",
                 state.scene.file.string() + ":/particle_spacing");
@@ -146,6 +148,7 @@ Simulation::Simulation(Scene scene, int threads, Guards guards)
   state.health = inspect(state.step, state.limits);
   state.statistics.energy.begin(state.health.energy, state.step, heightOf(state.step));
   state.info.stateHash = stateHash();
+  state.readGauges();
 }
 
 Simulation::~Simulation() = default;
@@ -201,6 +204,7 @@ std::vector<Vec3f> Simulation::gammaGradients() const {
 }
 
 void Simulation::watchPressure(bool on) {
+  on = on || state_->gauges.readsPressure();
   state_->step.pressure.watch(on);
   if (!on) state_->pressure.clear();
 }
@@ -246,6 +250,7 @@ void Simulation::visitState(StateVisitor& visitor) {
   state.savedNeighbours = std::move(neighbours);
   state.step.pressure.clear();
   state.describeFrame();
+  state.describeGauges();
   // Where walls are follows from the time.
   if (state.boundary.moves()) state.moveWalls(state.time, state.time);
   state.health = inspect(state.step, state.limits);

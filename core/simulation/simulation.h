@@ -62,7 +62,7 @@ class Simulation {
   /// reach.
   std::vector<Vec3f> gammaGradients() const;
   /// From the next frame on, view() has pressures, or none; state and hash are the same either way. A scene
-  /// that is coloured by pressure has them from the start.
+  /// that is coloured by pressure has them from the start, and one that has a gauge for it always.
   void watchPressure(bool on);
   /// Hash of ids, positions and velocities; the same for any number of threads.
   std::uint64_t stateHash() const;

@@ -91,6 +91,7 @@ void RunStatistics::visit(StateVisitor& visitor) {
   visitor.array("statistics/step_seconds", stepSeconds);
   fluid.visit(visitor);
   energy.visit(visitor);
+  for (std::size_t k = 0; k < gauges.size(); ++k) gauges[k].visit(visitor, "/gauges/" + std::to_string(k));
 
   std::vector<StageTime> times = stages.stages();
   auto count = static_cast<std::int64_t>(times.size());
@@ -123,7 +124,7 @@ HealthLimits healthLimits(const Scene& scene) {
   limits.domainGrows = !scene.domain.given;
   limits.gravity = scene.gravity;
   limits.slow = scene.particleSpacing / scene.solver.timeStep * scene.solver.substeps;
-  for (const auto& source : scene.fluid) limits.given = std::max(limits.given, source->velocity.norm());
+  for (const auto& source : scene.fluid) limits.given = std::max(limits.given, source->largestSpeed());
   for (const Emitter& emitter : scene.emitters) limits.given = std::max(limits.given, emitter.mouthSpeed());
   if (const Bounds bounds = scene.bounds(); !bounds.empty()) {
     limits.centre = bounds.center().cast<float>();

@@ -22,13 +22,15 @@ class Thinning {
  public:
   static constexpr std::size_t kMostSamples = 256;
 
+  explicit Thinning(std::size_t most = kMostSamples) : most_(most) {}
+
   /// A step has been taken, after which `sample` says how things are.
   template <class Sample>
   void add(std::vector<Sample>& history, const Sample& sample) {
     if (untilSample_-- > 0) return;
-    if (history.size() == kMostSamples) {
+    if (history.size() == most_) {
       for (std::size_t k = 0; 2 * k < history.size(); ++k) history[k] = history[2 * k];
-      history.resize(kMostSamples / 2);
+      history.resize(most_ / 2);
       stride_ *= 2;
     }
     untilSample_ = stride_ - 1;
@@ -38,6 +40,7 @@ class Thinning {
   void visit(StateVisitor& visitor, const std::string& name);
 
  private:
+  std::size_t most_;
   std::int64_t stride_ = 1, untilSample_ = 0;
 };
 
@@ -69,6 +72,28 @@ struct FluidBalance {
   void sample(double time);
   /// For a save.
   void visit(StateVisitor& visitor);
+};
+
+// What the gauges of a scene have shown.
+
+struct GaugeSample {
+  double time = 0;   ///< (s)
+  double value = 0;  ///< in the unit of the gauge
+};
+
+/// The start, where there is something to measure, and the end of every frame.
+struct GaugeSeries {
+  /// A wave and the peak of an impact keep their shape; a run of more frames is thinned.
+  static constexpr std::size_t kMostSamples = 16384;
+
+  std::vector<GaugeSample> history;
+  Thinning thinning{kMostSamples};
+
+  void add(double time, double value) { thinning.add(history, GaugeSample{time, value}); }
+  /// As few of the samples as a picture needs, the last one among them.
+  std::vector<GaugeSample> few() const;
+  /// For a save; `name` such as "/gauges/0".
+  void visit(StateVisitor& visitor, const std::string& name);
 };
 
 // The energy of the fluid over a run against what was put in: by moving walls, by emitters and by effects.
@@ -174,8 +199,9 @@ struct RunStatistics {
   double maxSpeed = 0;           ///< (m/s)
   FluidBalance fluid;
   EnergyBalance energy;
-  std::string gammaPicked;  ///< the gamma method that runs; empty without correction
-  std::string gammaReason;  ///< why "auto" took it; empty when the scene names it
+  std::vector<GaugeSeries> gauges;  ///< in the order of the scene
+  std::string gammaPicked;          ///< the gamma method that runs; empty without correction
+  std::string gammaReason;          ///< why "auto" took it; empty when the scene names it
   std::vector<Trouble> trouble;
 
   void note(const std::string& kind, long step, const std::string& detail);

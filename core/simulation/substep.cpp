@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -24,6 +25,38 @@ void Simulation::State::describeFrame() {
   info.stateHash = hash();
   info.energy = statistics.energy.history;
   step.pressure.pressures(step, pressure);
+}
+
+void Simulation::State::sumPressures(double dt) {
+  if (!gauges.readsPressure()) return;
+  step.pressure.pressures(step, pressure);
+  const GaugedFluid fluid{step.particles.position, step.particles.velocity, pressure};
+  for (std::size_t k = 0; k < gauges.size(); ++k)
+    if (gauges.isPressure(k))
+      pressureSums[k] +=
+          dt * gauges.read(k, fluid, nullptr, scene.solver.kernel, static_cast<double>(step.supportRadius))
+                   .value_or(0);
+}
+
+void Simulation::State::readGauges() {
+  const GaugedFluid fluid{step.particles.position, step.particles.velocity, pressure};
+  for (std::size_t k = 0; k < gauges.size(); ++k) {
+    std::optional<double> value;
+    if (!gauges.isPressure(k))
+      value = gauges.read(k, fluid, gamma.method.get(), scene.solver.kernel,
+                          static_cast<double>(step.supportRadius));
+    else if (frame > 0)
+      value = pressureSums[k] / scene.solver.timeStep;
+    if (value) statistics.gauges[k].add(time, *value);
+  }
+  describeGauges();
+}
+
+void Simulation::State::describeGauges() {
+  info.gauges.clear();
+  for (std::size_t k = 0; k < statistics.gauges.size(); ++k)
+    info.gauges.push_back(
+        {scene.gauges[k].name, std::string(scene.gauges[k].unit()), statistics.gauges[k].few()});
 }
 
 /// Walls are where they end up, having been at their places of `before`.
@@ -176,6 +209,7 @@ void Simulation::advanceFrame() {
   const double longest = frameStep / parameters.substeps;
   const double reach = parameters.cfl * static_cast<double>(state.step.supportRadius);
 
+  state.pressureSums.assign(state.gauges.size(), 0);
   StageTimes frameTimes;
   double wallSeconds = 0;
   double left = frameStep;
@@ -205,6 +239,7 @@ void Simulation::advanceFrame() {
       state.describeFrame();
       return;
     }
+    state.sumPressures(dt);
     left -= dt;
     ++taken;
     frameTimes.add(state.step.times);
@@ -216,6 +251,7 @@ void Simulation::advanceFrame() {
   state.info.stages = frameTimes;
   state.info.stepSeconds = wallSeconds / static_cast<double>(std::max(taken, 1L));
   state.describeFrame();
+  state.readGauges();
 }
 
 }  // namespace migiwa

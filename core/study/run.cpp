@@ -7,6 +7,7 @@
 #include "core/base/messages.h"
 #include "core/io/report.h"
 #include "core/simulation/measures.h"
+#include "core/study/series.h"
 #include "core/study/study.h"
 
 namespace migiwa {
@@ -54,6 +55,19 @@ Measure wallError(const Scene& scene) {
   for (const auto& surface : scene.surfaces)
     if (const Measure error = surface->fitError()) largest = std::max(largest.value_or(0), *error);
   return largest;
+}
+
+/// Of the gauges: the wave that the first one shows, and the mean of each over the last tenth of the run.
+void measureGauges(const Report& report, RunRecord& record) {
+  WaveMeasures wave;
+  for (const GaugeReport& gauge : report.gauges) {
+    const Series series{gauge.times, gauge.values};
+    if (&gauge == &report.gauges.front()) wave = waveMeasures(series);
+    const double end = report.simulatedSeconds.value_or(0);
+    record.measures.emplace_back("gauge_" + gauge.name, meanBetween(series, 0.9 * end, end));
+  }
+  record.measures.emplace_back("wave_kept", wave.kept);
+  record.measures.emplace_back("wave_period", wave.period);
 }
 
 }  // namespace
@@ -115,6 +129,7 @@ RunRecord firstRepetition(const StudyPlan& plan, std::size_t run, int threads,
                      {"energy_stored", report.energyStored},
                      {"wall_error", wallError(simulation.scene())},
                      {"precomputation_ms", 1e3 * preparation}};
+  measureGauges(report, record);
   record.pressure = pressure.layers();
   record.energy = statistics.energy.history;
   record.timings.push_back(timingOf(report, statistics));

@@ -160,6 +160,8 @@ void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
 //   start (core/simulation/statistics.h)
 // - wall_error (m): of walls that are fitted, mean distance from their shape
 // - precomputation_ms: what is made once, as if for the first time: reading, fits, grids, filling
+// - wave_kept (1), wave_period (s): of the first gauge of the scene (core/study/series.h)
+// - gauge_NAME: of each gauge, mean over the last tenth of the run
 // - bulk_spacing_p1, particles, steps, nonfinite, repeats, threads, gamma_method, state_hash
 // - wall_ms_per_s_min, _max: spread over the repetitions
 // - on_front: of density_error_mean

@@ -55,6 +55,16 @@ std::vector<std::string> stageNames(const std::vector<FinishedRun>& runs) {
   return names;
 }
 
+/// Of every gauge that a run has, in the order of the scene.
+std::vector<std::string> gaugeColumns(const std::vector<FinishedRun>& runs) {
+  std::vector<std::string> names;
+  for (const FinishedRun& run : runs)
+    for (const auto& [name, value] : run.record.measures)
+      if (name.starts_with("gauge_") && std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+  return names;
+}
+
 using Cells = std::function<std::string(const FinishedRun&)>;
 struct Column {
   std::string name;
@@ -96,8 +106,11 @@ std::vector<Column> columns(const StudyPlan& plan, const std::vector<FinishedRun
                            "energy_gained",
                            "energy_stored",
                            "wall_error",
-                           "precomputation_ms"})
+                           "precomputation_ms",
+                           "wave_kept",
+                           "wave_period"})
     all.push_back(measured(name));
+  for (const std::string& name : gaugeColumns(runs)) all.push_back(measured(name));
   const auto extreme = [](bool largest) {
     return [largest](const FinishedRun& run) {
       double found = run.record.timings.empty() ? 0 : run.record.timings.front().wallMsPerSecond;

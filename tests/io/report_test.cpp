@@ -67,6 +67,8 @@ Report filledReport() {
   report.drainedParticles = 200;
   report.drainedVolume = 0.025;
   report.drains = {{200, 0.025, {0.5, 1}, {0.0125, 0.025}}};
+  report.gauges = {{"left", "height", "m", {0, 0.5, 1}, {0.25, 0.5, 0.75}},
+                   {"floor", "pressure", "Pa", {0.5, 1}, {100, 200}}};
   report.trouble = {{"not_converged", 12, 3, "error 0.04"}};
   report.settled.height = 0.75;
   report.settled.edgeCrowding = 1.0625;
@@ -86,6 +88,11 @@ TEST_F(ReportFile, ComesBackTheSame) {
   EXPECT_DOUBLE_EQ(again.stages[1].seconds, 0.001);
   ASSERT_EQ(again.trouble.size(), 1U);
   EXPECT_EQ(again.trouble[0].step, 12);
+  ASSERT_EQ(again.gauges.size(), 2U);
+  EXPECT_EQ(again.gauges[1].name + again.gauges[1].kind + again.gauges[1].unit, "floorpressurePa");
+  EXPECT_EQ(again.gauges[0].times, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(again.gauges[0].values, (std::vector<double>{0.25, 0.5, 0.75}));
+  EXPECT_EQ(gaugesCsv(again), "time (s),left (m),floor (Pa)\n0,0.25,\n0.5,0.5,100\n1,0.75,200\n");
   ASSERT_EQ(again.drains.size(), 1U);
   EXPECT_EQ(again.drains[0].times, (std::vector<double>{0.5, 1}));
   EXPECT_EQ(again.drains[0].volumes, (std::vector<double>{0.0125, 0.025}));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/scene/scene_file.h"
 #include "core/scene/sources.h"
 
 namespace migiwa {
@@ -121,6 +122,49 @@ TEST(SphereSource, CountIsNeverBelowWhatIsFilled) {
     const SphereSource sphere({0, 0, 0}, radius);
     EXPECT_GE(sphere.count(0.1), static_cast<double>(filled(sphere, 0.1).size())) << "radius " << radius;
   }
+}
+
+/// The wave that a scene's object describes; y is up.
+std::shared_ptr<const FluidSource> waveOf(const std::string& fields) {
+  return parseScene(
+             R"({"format": 1, "particle_spacing": 0.02, "boundary": {"surfaces": []}, "fluid": [{"shape":
+      "wave", )" +
+                 fields + "}]}",
+             "wave.json")
+      .fluid.front();
+}
+
+TEST(WaveSource, IsFullUpToItsSurface) {
+  const auto source =
+      waveOf(R"("form": "cosine", "min": [0, 0, 0], "max": [1, 0.5, 0.02], "height": 0.05, "wavelength": 2)");
+  const auto centers = filled(*source, 0.005);
+  EXPECT_LE(static_cast<double>(centers.size()), source->count(0.005));
+  for (const Vec3d& p : centers) EXPECT_LT(p.y(), 0.5 + 0.05 * std::cos(std::numbers::pi * p.x()));
+  // Cells are in or out as a whole: the volume is that of the still water but for that.
+  EXPECT_NEAR(static_cast<double>(centers.size()) * std::pow(0.005, 3) / 0.02, 0.5, 0.005 * 0.5);
+  // Half a cosine from 0 to 1 carries the centre of mass by -2 H / (pi^2 d).
+  EXPECT_NEAR(mean(centers).x(), 0.5 - 2 * 0.05 / (std::numbers::pi * std::numbers::pi * 0.5), 5e-4);
+  EXPECT_TRUE(source->velocityAt({0.3, 0.2, 0.1}).isZero());
+}
+
+TEST(WaveSource, ASolitaryWaveCarriesItsWater) {
+  const double speed = std::sqrt(9.81 * 0.36);
+  const auto source = waveOf(
+      R"("form": "solitary", "min": [0, 0, 0], "max": [6, 0.3, 0.1], "height": 0.06, "crest": 3, "speed": 1.879255)");
+  // At the crest u = c H / (d + H); far away the water is at rest.
+  EXPECT_NEAR(source->velocityAt({3, 0.1, 0}).x(), speed * 0.06 / 0.36, 1e-6);
+  EXPECT_NEAR(source->velocityAt({6, 0.1, 0}).norm(), 0, 1e-3);
+  EXPECT_GE(source->largestSpeed(), source->velocityAt({3, 0.1, 0}).norm());
+  // The volume of the hump is 4 d sqrt(d H / 3) for each metre across; its tails are thinner than half a
+  // cell.
+  double hump = 0;
+  for (const Vec3d& p : filled(*source, 0.005)) hump += p.y() > 0.3 ? std::pow(0.005, 3) : 0;
+  EXPECT_NEAR(hump / 0.1, 4 * 0.3 * std::sqrt(0.3 * 0.06 / 3), 2e-3);
+  // Free of divergence: v at the height y is -y du/dx.
+  const double step = 1e-4, x = 2.7, y = 0.2;
+  const double slope =
+      (source->velocityAt({x + step, y, 0}).x() - source->velocityAt({x - step, y, 0}).x()) / (2 * step);
+  EXPECT_NEAR(source->velocityAt({x, y, 0}).y(), -y * slope, 1e-6);
 }
 
 TEST(FluidSources, EveryNameMakesASource) {
