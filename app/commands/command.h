@@ -24,6 +24,9 @@ namespace migiwa {
 /// Exit codes that people script against.
 enum ExitCode { kDone = 0, kBadInput = 2, kNumericalTrouble = 3, kSomethingMissing = 4 };
 
+/// The longest run that an option can ask for (s): as long as a scene's duration can be.
+inline constexpr double kLongestRun = 1e6;
+
 /// Options that every command takes.
 struct CommonOptions {
   std::vector<Override> overrides;  ///< --set, in order

@@ -251,8 +251,6 @@ Command simulateCommand() {
 
 namespace {
 
-constexpr double kLongestRun = 1e6;  // (s), as long as a scene's duration can be
-
 class JobReader {
  public:
   JobReader(const SimulateOptions& options, const CommonOptions& common)

@@ -263,7 +263,6 @@ Command studyCommand() {
 
 namespace {
 
-constexpr double kLongestRun = 1e6;  // (s), as long as a scene's duration can be
 constexpr std::size_t kMostRuns = 10000;
 constexpr int kMostRepeats = 100;
 

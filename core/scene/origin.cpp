@@ -78,14 +78,14 @@ std::optional<Vec3d> placeOfFile(const Json& entry, const std::string& pointer, 
   return std::nullopt;
 }
 
-struct Entry {
+struct PlacedObject {
   const Json* json;
   std::string pointer;
 };
 
 /// Adds the objects of a list, if it is there and one.
 void addEntries(const Json& object, const std::string& key, const std::string& pointer,
-                std::vector<Entry>& out) {
+                std::vector<PlacedObject>& out) {
   if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return;
   for (std::size_t k = 0; k < object[key].size(); ++k)
     if (const Json& entry = object[key][k]; entry.is_object())
@@ -94,7 +94,7 @@ void addEntries(const Json& object, const std::string& key, const std::string& p
 
 /// Extents of what tells where the scene is, the best first: fluid, walls with an end or, where neither says
 /// so, shapes from files; then points of planes.
-std::vector<Bounds> extentsOf(const std::vector<Entry>& fluid, const std::vector<Entry>& walls,
+std::vector<Bounds> extentsOf(const std::vector<PlacedObject>& fluid, const std::vector<PlacedObject>& walls,
                               const FaultList& faults) {
   std::vector<Bounds> extents;
   // What is out of range is a fault, and said where it is read.
@@ -149,7 +149,7 @@ Vec3d originOf(const Json& root, const FaultList& faults) {
   const double spacing = numberAt(root, "particle_spacing").value_or(Scene().particleSpacing);
   // The distance from which on floats are too coarse.
   const double reach = kFinest * spacing / double(std::numeric_limits<float>::epsilon());
-  std::vector<Entry> fluid, walls;
+  std::vector<PlacedObject> fluid, walls;
   addEntries(root, "fluid", "/fluid", fluid);
   addEntries(root, "emitters", "/emitters", fluid);
   if (root.contains("boundary")) addEntries(root["boundary"], "surfaces", "/boundary/surfaces", walls);

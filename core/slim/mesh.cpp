@@ -11,7 +11,7 @@ namespace {
 /// Cells along the longest side: at least, for smooth outlines; at most, for memory.
 constexpr double kFewestCells = 90, kMostCells = 220;
 /// Cells between the surface and the lattice's border.
-constexpr double kMargin = 2.5;
+constexpr double kCellsAround = 2.5;
 /// Edge of a cell over the radius of a small ball, at most.
 constexpr double kDetail = 0.35;
 /// Triangles that a surface of area A gets are about this times A over the square of the cell's edge.
@@ -56,7 +56,7 @@ TetrahedraLattice latticeFor(const SlimModel& model, double mostTriangles) {
   const double cell =
       std::max({std::min(kDetail * static_cast<double>(*quarter), extent / kFewestCells), extent / kMostCells,
                 std::sqrt(kTrianglesPerCell * areaOf(model, bounds) / mostTriangles)});
-  bounds = bounds.grown(kMargin * cell);
+  bounds = bounds.grown(kCellsAround * cell);
   return {bounds.min.cast<float>(), static_cast<float>(cell),
           (bounds.size().array() / cell).ceil().cast<int>().matrix()};
 }

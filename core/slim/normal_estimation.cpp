@@ -19,7 +19,7 @@ namespace {
 /// Neighbours that a plane goes through, and that orientation is propagated to.
 constexpr std::size_t kNeighbours = 16;
 /// Mean normal of a surface, up to which it counts as closed.
-constexpr double kMostOpen = 0.1;
+constexpr double kMostUncovered = 0.1;
 /// Points at which inside and outside are checked, and the part of them that may be wrong: at sharp edges.
 constexpr std::size_t kChecked = 200;
 constexpr double kMostWrong = 0.03;
@@ -119,7 +119,7 @@ class Cloud {
       mean += areas_[k] * points_[k].normal.cast<double>();
       area += areas_[k];
     }
-    if (mean.norm() > kMostOpen * area) return "they do not cover a closed surface all around";
+    if (mean.norm() > kMostUncovered * area) return "they do not cover a closed surface all around";
     std::vector<std::uint32_t> all(points_.size());
     std::iota(all.begin(), all.end(), 0U);
     const std::size_t checked = std::min(kChecked, points_.size());

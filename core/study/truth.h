@@ -13,6 +13,9 @@
 
 namespace migiwa {
 
+/// Of every case's scene (m/s^2).
+inline constexpr double kGravity = 9.81;
+
 /// A run of a case's scene.
 struct TruthRun {
   Scene scene;

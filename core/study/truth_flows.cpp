@@ -10,8 +10,6 @@ namespace migiwa {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kGravity = 9.81;   // (m/s^2)
 constexpr double kPerMetre = 9810;  // rho0 g (Pa/m)
 
 double endOf(const TruthRun& run) {
@@ -58,7 +56,7 @@ TruthFindings torricelli(const TruthRun& run) {
   // Below a gate a jet contracts to pi / (pi + 2) of the opening (Kirchhoff 1869), and flows as fast as it
   // would fall from the level.
   constexpr double kLength = 1, kStart = 0.6, kHigh = 0.5, kLow = 0.3;  // (m)
-  constexpr double kJet = 0.08 * kPi / (kPi + 2);
+  constexpr double kJet = 0.08 * std::numbers::pi / (std::numbers::pi + 2);
   const auto timeBetween = [&](double high, double low) {
     return 2 * kLength / (kJet * std::sqrt(2 * kGravity)) * (std::sqrt(high - kJet) - std::sqrt(low - kJet));
   };
@@ -105,11 +103,11 @@ TruthFindings inviscidVortex(const TruthRun& run) {
 
 /// Taylor and Green 1937: exp(-2 nu k^2 t).
 TruthFindings viscousVortex(const TruthRun& run) {
-  return vortex(run, "Vortex in a box of oil", 2 * 0.02 * kPi * kPi);
+  return vortex(run, "Vortex in a box of oil", 2 * 0.02 * std::numbers::pi * std::numbers::pi);
 }
 
 TruthFindings bucket(const TruthRun& run) {
-  constexpr double kTurn = 2 * kPi, kRadius = 0.22;  // (rad/s, m): of the rim's gauge
+  constexpr double kTurn = 2 * std::numbers::pi, kRadius = 0.22;  // (rad/s, m): of the rim's gauge
   const double known = kTurn * kTurn * kRadius * kRadius / (2 * kGravity);
   const Series middle = run.gauge("middle"), rim = run.gauge("rim");
   Series rise = rim;

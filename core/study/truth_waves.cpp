@@ -8,16 +8,13 @@ namespace migiwa {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kGravity = 9.81;  // (m/s^2)
-
 /// A sine of known period and height about a level, from `start` on.
 Series cosine(double level, double height, double period, double until) {
   Series series;
   for (int k = 0; k <= 400; ++k) {
     const double t = until * k / 400;
     series.times.push_back(t);
-    series.values.push_back(level + height * std::cos(2 * kPi * t / period));
+    series.values.push_back(level + height * std::cos(2 * std::numbers::pi * t / period));
   }
   return series;
 }
@@ -34,22 +31,22 @@ std::vector<TruthAnswer> keptWave(const Series& series, double period) {
 
 /// Linear theory of a wave of wave number k (1/m) over the depth (m).
 double linearPeriod(double k, double depth) {
-  return 2 * kPi / std::sqrt(kGravity * k * std::tanh(k * depth));
+  return 2 * std::numbers::pi / std::sqrt(kGravity * k * std::tanh(k * depth));
 }
 
 TruthFindings standingWave(const TruthRun& run) {
   const Series centre = run.gauge("centre");
-  const double period = linearPeriod(kPi, 0.5);
+  const double period = linearPeriod(std::numbers::pi, 0.5);
   // Half a wave H cos(pi x / L) over the depth d carries the centre of mass by -2 H L / (pi^2 d).
   return {keptWave(centre, period),
           {{"Standing wave", "centre of mass (m)", centre,
-            cosine(0.5, -2 * 0.05 / (kPi * kPi * 0.5), period, endOf(centre))}}};
+            cosine(0.5, -2 * 0.05 / (std::numbers::pi * std::numbers::pi * 0.5), period, endOf(centre))}}};
 }
 
 TruthFindings uTube(const TruthRun& run) {
   // Two arms and a bottom of 0.4 m each, and two corners, of which each counts as 0.559 of its width.
   const double length = 3 * 0.4 + 2 * 0.559 * 0.1;
-  const double period = 2 * kPi * std::sqrt(length / (2 * kGravity));
+  const double period = 2 * std::numbers::pi * std::sqrt(length / (2 * kGravity));
   const Series left = run.gauge("left"), centre = run.gauge("centre");
   // The centre of mass is in the middle when the levels are the same.
   constexpr double kMiddle = 0.3;  // (m)
@@ -86,7 +83,7 @@ TruthFindings solitaryWave(const TruthRun& run) {
 TruthFindings sloshing(const TruthRun& run) {
   // The tank rolls for three periods, and then the water swings by itself.
   constexpr double kStop = 3 * 1.63;
-  const double period = linearPeriod(kPi / 0.9, 0.093);
+  const double period = linearPeriod(std::numbers::pi / 0.9, 0.093);
   const Series all = run.gauge("centre");
   Series after;
   for (std::size_t k = 0; k < all.times.size(); ++k)
@@ -102,7 +99,7 @@ TruthFindings sloshing(const TruthRun& run) {
 constexpr double kDropRadius = 0.0035, kTension = 0.072;  // (m, N/m)
 
 TruthFindings oscillatingDrop(const TruthRun& run) {
-  const double period = 2 * kPi * std::sqrt(1000 * std::pow(kDropRadius, 3) / (8 * kTension));
+  const double period = 2 * std::numbers::pi * std::sqrt(1000 * std::pow(kDropRadius, 3) / (8 * kTension));
   const Series width = run.gauge("width");
   const WaveMeasures found = waveMeasures(width);
   return {{{"period (s)", period, found.period}}, {{"Oscillating drop", "width (m)", width, {}}}};

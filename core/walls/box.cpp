@@ -8,10 +8,6 @@
 
 namespace migiwa {
 
-namespace {
-constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
-}
-
 Box::Box(const Vec3d& min, const Vec3d& max, Fluid fluid, const Rotation& rotation)
     : min_(min), max_(max), rotation_(rotation), fluid_(fluid) {
   prepare();

@@ -80,10 +80,6 @@ void Plane::wireframe(const Bounds& scene, std::vector<LineSegment>& out) const 
   }
 }
 
-namespace {
-constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
-}
-
 Sphere::Sphere(const Vec3d& center, double radius, Fluid fluid)
     : centerExact_(center), radiusExact_(radius), fluid_(fluid) {
   prepare();

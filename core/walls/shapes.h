@@ -2,12 +2,16 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include "core/base/fields.h"
 #include "core/walls/surface.h"
 
 namespace migiwa {
+
+/// On which side of a closed surface the fluid is, as scenes name it; in the order of the enums below.
+inline constexpr std::array<std::string_view, 2> kFluidNames{"inside", "outside"};
 
 // An infinite plane wall.
 
