@@ -6,6 +6,9 @@ function(migiwa_join_rooms target)
   if(NOT CMAKE_BUILD_TYPE STREQUAL Release)
     return()
   endif()
+  # GCC takes every file that another includes for a header, in which classes with members from an unnamed namespace would
+  # be a mistake.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH folder)

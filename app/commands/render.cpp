@@ -253,12 +253,12 @@ void requireFolderName(const std::filesystem::path& folder) {
 
 /// Cells of a sheet are drawn into one picture: as large as other programs open it.
 void requireSheet(const RenderJob& job, std::size_t rows, std::size_t columns) {
-  constexpr double kLargestSide = 32767;
+  constexpr double kLargestSheetSide = 32767;
   const double width = static_cast<double>(columns) * (job.width + kSheetGutter),
                height = static_cast<double>(rows) * (job.height + kSheetGutter);
-  if (width > kLargestSide || height > kLargestSide) {
+  if (width > kLargestSheetSide || height > kLargestSheetSide) {
     std::ostringstream text;
-    text << "expected a sheet of at most " << kLargestSide << " pixels a side, found " << columns
+    text << "expected a sheet of at most " << kLargestSheetSide << " pixels a side, found " << columns
          << " times of " << job.width << " and " << rows << " values of " << job.height
          << " pixels; a smaller --size, or fewer of them, would do";
     throw InputError("--compare", text.str());
