@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
@@ -77,6 +78,11 @@ Command slimCommand();
 Command studyCommand();
 Command schemaCommand();
 Command truthCommand();
+
+/// What is shipped under that name: in the current folder, or in the repository that the program was built
+/// in. Throws InputError at `option` where it is in neither; `what` such as "a scene file".
+std::filesystem::path shippedPlace(const std::filesystem::path& name, const std::string& option,
+                                   const std::string& what);
 
 // Option values that are lists or pairs, read from their text. Faults name the option.
 

@@ -354,6 +354,17 @@ Command checkCommand() {
           }};
 }
 
+std::filesystem::path shippedPlace(const std::filesystem::path& name, const std::string& option,
+                                   const std::string& what) {
+  std::error_code error;
+  if (std::filesystem::exists(name, error)) return name;
+  for (std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+       folder.has_relative_path(); folder = folder.parent_path())
+    if (std::filesystem::exists(folder / name, error)) return folder / name;
+  throw InputError(option, "expected " + what + ", found none given and no " + name.string() +
+                               " here or in a folder above the program");
+}
+
 // `migiwa view [SCENE]`: the window.
 namespace {
 
@@ -365,18 +376,9 @@ struct ViewOptions {
   std::optional<long> frames;
 };
 
-/// The scene to begin with: in the current folder's scenes/, or in the repository that the program was built
-/// in.
+/// The scene to begin with.
 fs::path defaultScene() {
-  const fs::path name = fs::path("scenes") / "dam_break.json";
-  std::error_code error;
-  if (fs::exists(name, error)) return name;
-  for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); folder.has_relative_path();
-       folder = folder.parent_path()) {
-    if (fs::exists(folder / name, error)) return folder / name;
-  }
-  throw InputError("SCENE", "expected a scene file, found none given and no " + name.string() +
-                                " here or in a folder above the program");
+  return shippedPlace(fs::path("scenes") / "dam_break.json", "SCENE", "a scene file");
 }
 
 /// migiwa_0001.png and so on: the first that is not there yet.

@@ -21,7 +21,7 @@ namespace {
 
 struct TruthOptions {
   std::vector<std::string> names;
-  std::string scenes = "scenes/truth", out;
+  std::string scenes, out;
   bool quick = false;
 };
 
@@ -82,6 +82,11 @@ class Truth {
   Truth(const TruthOptions& options, const CommonOptions& common) : options_(options), common_(common) {
     FaultCollector collect;
     for (const std::string& name : options.names) collect([&] { cases_.push_back(&truthCase(name)); });
+    collect([&] {
+      scenes_ = options.scenes.empty() ? shippedPlace(std::filesystem::path("scenes") / "truth", "--scenes",
+                                                      "a folder of scenes")
+                                       : std::filesystem::path(options.scenes);
+    });
     collect([&] { makeFolder(options.out, "--out"); });
     collect.raise();
     if (cases_.empty())
@@ -116,13 +121,12 @@ class Truth {
       if (options_.quick && !runs.empty()) break;
       if (!common_.quiet) std::cerr << which.name << ", " << setting.label << '\n';
       std::unique_ptr<ProgressBar> progress;
-      const TruthRun run = runTruth(which, options_.scenes, setting, common_.overrides, common_.threads,
-                                    [&](const Simulation& simulation) {
-                                      if (!progress)
-                                        progress = std::make_unique<ProgressBar>(
-                                            0, simulation.scene().duration, common_.quiet);
-                                      progress->update(simulation.time());
-                                    });
+      const TruthRun run = runTruth(
+          which, scenes_, setting, common_.overrides, common_.threads, [&](const Simulation& simulation) {
+            if (!progress)
+              progress = std::make_unique<ProgressBar>(0, simulation.scene().duration, common_.quiet);
+            progress->update(simulation.time());
+          });
       progress.reset();
       const Report& report = run.report;
       const double simulated = report.simulatedSeconds.value_or(0);
@@ -168,6 +172,7 @@ class Truth {
 
   const TruthOptions& options_;
   const CommonOptions& common_;
+  std::filesystem::path scenes_;
   std::vector<const TruthCase*> cases_;
   bool stopped_ = false;
 };
@@ -192,8 +197,7 @@ Command truthCommand() {
                  {.name = "--scenes",
                   .target = &options->scenes,
                   .value = "DIR",
-                  .help = "Folder of the cases' scenes.",
-                  .shownDefault = "scenes/truth"},
+                  .help = "Folder of the cases' scenes; left out: scenes/truth, here or above the program."},
                  {.name = "--quick",
                   .target = &options->quick,
                   .help = "Each case with its first setting only."}},

@@ -38,9 +38,6 @@ class EffectPipeline {
   std::vector<EffectBuffer> buffers_;
 };
 
-// Fluid that walls leave less room than it needs: no place of the particles is free of density errors, and a
-// solve that is given time would turn the errors that it cannot undo into ever more speed.
-
 // Fluid that walls leave less room than it needs: no positions of the particles are free of density errors,
 // and a solve that is given time would turn the errors that it cannot undo into ever more speed.
 
