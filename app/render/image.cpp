@@ -3,9 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <stdexcept>
 #include <vector>
 
+#include <zlib.h>
+
+namespace {
+
+/// What stb_image_write asks of a compressor: `size` bytes into `*outSize` bytes that it frees. zlib writes a
+/// fifth less than stb's own.
+unsigned char* deflateForPng(unsigned char* bytes, int size, int* outSize, int /*quality*/) {
+  uLongf length = compressBound(static_cast<uLong>(size));
+  auto* out = static_cast<unsigned char*>(std::malloc(length));
+  if (out == nullptr ||
+      compress2(out, &length, bytes, static_cast<uLong>(size), Z_BEST_COMPRESSION) != Z_OK) {
+    std::free(out);
+    return nullptr;
+  }
+  *outSize = static_cast<int>(length);
+  return out;
+}
+
+}  // namespace
+
+#define STBIW_ZLIB_COMPRESS deflateForPng
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>
 
 namespace migiwa {

@@ -202,6 +202,22 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                  {"",
                   "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
                   "paper's plain iteration."});
+  visitor.choice(
+      "velocity_step", solver.velocityStep, kVelocityStepNames,
+      {"",
+       "Where velocities come from: from the way that the constraint has moved particles (PBF), or from a "
+       "pressure that makes them free of divergence, while the constraint corrects positions alone: waves "
+       "keep their height, see docs/method.md."});
+  if (solver.velocityStep == VelocityStep::projection && visitor.valid({"kernel", "velocity_step"}) &&
+      solver.kernel != KernelType::cubicSpline && solver.kernel != KernelType::wendlandC2)
+    visitor.fault("velocity_step",
+                  "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
+                  "\"cubic_spline\", for \"projection\"; found \"" +
+                      std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
+  visitor.number("divergence_tolerance", solver.divergenceTolerance, Range::halfOpen(0, 1),
+                 {"1", "Of a projection: mean divergence times time step that ends its iterations."});
+  visitor.integer("max_pressure_iterations", solver.maxPressureIterations, Range::closed(1, 1000),
+                  {"1", "Of a projection: iterations of the pressure, at most."});
   visitor.number("rest_density", solver.restDensity, Range::closed(1e-6, 1e6),
                  {"kg/m^3", "Density of the fluid at rest."});
 }

@@ -69,6 +69,7 @@ EnergySums Outflow::remove(double time, const Bounds& domain, const Vec3f& centr
   }
   // Samples of gamma stay where they are until the step makes its own: particles name theirs.
   if (state.wallSlot.size() == n) keep(state.wallSlot, fates);
+  if (state.projectedPressure.size() == n) keep(state.projectedPressure, fates);
   keep(particles.position, fates);
   keep(particles.velocity, fates);
   keep(particles.id, fates);

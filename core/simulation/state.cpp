@@ -129,7 +129,7 @@ void visitStepMemory(StateVisitor& visitor, StepState& state, std::vector<std::u
   std::vector<Triple> position, velocity;
   std::vector<SavedSlot> slots;
   Particles read;
-  std::vector<float> density, gamma, lambda;
+  std::vector<float> density, gamma, lambda, pressure;
   std::vector<IterationError> errors;
   const bool reading = visitor.reading();
   if (!reading) {
@@ -139,6 +139,7 @@ void visitStepMemory(StateVisitor& visitor, StepState& state, std::vector<std::u
   visitor.array("particles/id", reading ? read.id : state.particles.id);
   visitor.array("particles/position", position);
   visitor.array("particles/velocity", velocity);
+  visitor.array("particles/pressure", reading ? pressure : state.projectedPressure);
   visitor.array("walls/slots", slots);
   visitor.array("fields/density", reading ? density : state.density);
   visitor.array("fields/gamma", reading ? gamma : state.gamma);
@@ -154,6 +155,9 @@ void visitStepMemory(StateVisitor& visitor, StepState& state, std::vector<std::u
       throw StateError("the same number of particles in every array, found " + std::to_string(n) + " and " +
                        std::to_string(size));
   }
+  if (!pressure.empty() && pressure.size() != n)
+    throw StateError("a pressure for each of " + std::to_string(n) + " particles, found " +
+                     std::to_string(pressure.size()));
   for (const SavedSlot& slot : slots) {
     if (slot.particle >= n)
       throw StateError("wall slots of " + std::to_string(n) + " particles, found one of particle " +
@@ -163,6 +167,7 @@ void visitStepMemory(StateVisitor& visitor, StepState& state, std::vector<std::u
   read.velocity = unpacked(velocity);
   state.particles = std::move(read);
   state.density = std::move(density), state.gamma = std::move(gamma), state.lambda = std::move(lambda);
+  state.projectedPressure = std::move(pressure);
   state.errors = std::move(errors);
   restoreSlots(state, slots);
 }

@@ -1,5 +1,7 @@
 #include "core/solver/energy.h"
 
+#include <algorithm>
+
 #include "core/solver/state.h"
 
 namespace migiwa {
@@ -111,6 +113,13 @@ void PressureSum::iterate(const StepState& state, float weight) {
 }
 
 void PressureSum::pressures(const StepState& state, std::vector<float>& out) const {
+  if (watched_ && state.projects()) {
+    const auto density = static_cast<float>(state.parameters.restDensity);
+    out.resize(state.projectedPressure.size());
+    std::transform(state.projectedPressure.begin(), state.projectedPressure.end(), out.begin(),
+                   [density](float pressure) { return density * pressure; });
+    return;
+  }
   out.resize(now_.size());
   const double scale = -state.parameters.restDensity * static_cast<double>(state.supportRadius) *
                        static_cast<double>(state.supportRadius) /

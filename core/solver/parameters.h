@@ -19,6 +19,13 @@ enum class PositionStep {
 };
 inline constexpr std::array<std::string_view, 3> kPositionStepNames{"gradient", "pairs_and_wall", "paper"};
 
+/// Where velocities come from.
+enum class VelocityStep {
+  positions,   ///< how far the constraint has moved particles, over the time step: PBF
+  projection,  ///< a pressure that makes them free of divergence; the constraint corrects positions alone
+};
+inline constexpr std::array<std::string_view, 2> kVelocityStepNames{"positions", "projection"};
+
 /// How the iterations are made to converge in fewer.
 enum class Acceleration { chebyshev, none };
 inline constexpr std::array<std::string_view, 2> kAccelerationNames{"chebyshev", "none"};
@@ -36,6 +43,10 @@ struct SolverParameters {
   KernelType kernel = KernelType::poly6;
   PositionStep positionStep = PositionStep::gradient;
   Acceleration acceleration = Acceleration::chebyshev;
+  VelocityStep velocityStep = VelocityStep::positions;
+  /// Mean divergence, times the time step, that ends a projection (unit: 1, range: [0, 1))
+  double divergenceTolerance = 1e-4;
+  int maxPressureIterations = 50;  ///< of a projection (range: [1, 1000])
 };
 
 struct BoundaryParameters {

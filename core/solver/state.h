@@ -57,12 +57,36 @@ struct SuppressedPush {
   Float4 began;
 };
 
+/// The inverse of a particle's moment matrix, see projection_simd.cpp.
+struct Moment {
+  Vec3f diagonal = Vec3f::Zero();  ///< xx, yy, zz
+  Vec3f rest = Vec3f::Zero();      ///< xy, xz, yz
+  bool sound = false;              ///< whether there is one
+};
+
+/// Where a projection of the velocities works, a value a particle.
+struct ProjectionBuffers {
+  std::vector<float> potential;        ///< dt p / rho0 (m^2/s)
+  std::vector<float> diagonal;         ///< of the matrix (1)
+  std::vector<float> missing;          ///< what air leaves out of h grad rho / rho0 (1)
+  std::vector<float> residual, image;  ///< (m^2/s)
+  std::vector<std::uint8_t> active;    ///< whether it has a part in the solve
+  std::vector<Moment> inverse;
+
+  void resize(std::size_t n) {
+    potential.resize(n), diagonal.resize(n), missing.resize(n), residual.resize(n), image.resize(n);
+    active.resize(n), inverse.resize(n);
+  }
+};
+
 /// What lasts from step to step. gamma is evaluated anew only where a particle has moved, so what was
 /// evaluated lasts, too.
 struct FluidState {
   static constexpr std::uint32_t kNoWall = std::numeric_limits<std::uint32_t>::max();
 
   Particles particles;
+  /// p / rho0 (m^2/s^2) of the last projection, where the next begins; empty without one.
+  std::vector<float> projectedPressure;
   std::vector<WallSlot> wallSlots;
   std::vector<std::uint32_t> wallSlot;  ///< of each particle, or kNoWall
 };
@@ -80,12 +104,14 @@ struct StepBuffers {
   std::vector<float> gamma;
   std::vector<float> density;  ///< rho/rho0
   std::vector<float> lambda;   ///< Eq. 11 over the squared support radius (1)
+  ProjectionBuffers projection;
 };
 
 /// What happened in a step, for the report.
 struct StepRecord {
   std::vector<IterationError> errors;
   int iterations = 0;
+  int pressureIterations = 0;  ///< of the projection
 
   // Guards that acted.
   long gammaFloored = 0;
@@ -129,6 +155,7 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   RestingLattice lattice{};
   float timeStep = 0;  ///< of this substep (s)
 
+  bool projects() const { return parameters.velocityStep == VelocityStep::projection; }
   /// Whether the walls' part of the density is added, rather than divided by gamma.
   bool addsWallDensity() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::added; }
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda

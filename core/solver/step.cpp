@@ -18,6 +18,16 @@
 //      v
 //   velocity = (x* - x) / dt, position = x*, then effects on velocities
 //
+// With the velocity step "projection" the velocities do not come from the way that the constraint has moved
+// particles, but from a pressure, at the places where the step begins:
+//
+//   neighbours                     of the positions
+//   predict                        v* = the way that walls leave of (v + g dt) dt, over dt
+//   effects, gamma                 at the positions
+//   pressure                       v = v* - grad phi, free of divergence               (projection_simd.cpp)
+//   move                           x* = x + v dt, walls keep x* on the fluid side
+//   lambda, position, ...          the loop above; velocities stay
+//
 // A step that ends with a value that is not finite, or that walls leave no room, is refused and taken back.
 #include "core/solver/step.h"
 
@@ -72,6 +82,8 @@ void searchNeighbours(StepState& state) {
   reorder(state.particles.position, state.previous, order, state.pool);
   reorder(state.particles.velocity, state.previous, order, state.pool);
   reorder(state.particles.id, state.spareIds, order, state.pool);
+  if (state.projectedPressure.size() == n)
+    reorder(state.projectedPressure, state.projection.residual, order, state.pool);
   if (state.wallSlot.size() == n) reorder(state.wallSlot, state.spareIds, order, state.pool);
   // The search has the room of a buffer that the iterations fill only afterwards.
   resizeTight(state.paired, n + NeighbourLists::kScratchExtra);
@@ -100,6 +112,38 @@ void updateVelocities(StepState& state, bool keep) {
   if (!keep) return;
   particles.position.swap(state.before.position);
   particles.velocity.swap(state.before.velocity);
+}
+
+void takeVelocities(StepState& state) {
+  Particles& particles = state.particles;
+  const float inverseStep = 1 / state.timeStep;
+  parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      particles.velocity[i] = Float4(inverseStep * (state.current[i].xyz() - particles.position[i].xyz()));
+  });
+}
+
+void moveAlong(StepState& state) {
+  const Particles& particles = state.particles;
+  parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      state.current[i].setXyz(particles.position[i].xyz() + state.timeStep * particles.velocity[i].xyz());
+  });
+  projectAll(state);
+}
+
+void updatePositions(StepState& state) {
+  Particles& particles = state.particles;
+  const std::size_t n = particles.size();
+  std::vector<Float4>& position = state.before.position;
+  resizeTight(position, n);
+  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3f solved = state.current[i].xyz();
+      position[i] = Float4(solved, knownClearance(state, i, solved));
+    }
+  });
+  particles.position.swap(position);
 }
 
 void acceptPositions(StepState& state) {
@@ -137,20 +181,19 @@ void takePositions(StepState& state) {
   std::copy(position.begin(), position.end(), state.current.begin());
 }
 
+void listNeighbours(StepState& state) {
+  state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
+  if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
+}
+
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
 /// stay. `watch`, unless it is empty, is called after every stage that may change what the step goes on with.
-void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& watch) {
+void solveConstraint(StepState& state, EffectPipeline& effects, int minIterations, const Watch& watch) {
   const SolverParameters& parameters = state.parameters;
   const auto watched = [&](std::string_view stage) {
     if (watch) watch(stage);
   };
-  state.times.time("neighbours", [&] { stages::searchNeighbours(state); });
-  if (!state.thinWalls.empty()) state.times.time("thin_walls", [&] { stages::separateNeighbours(state); });
-  watched("neighbours");
-  effects.changePrediction(state, watch);
-  state.times.time("gamma", [&] { stages::evaluateGamma(state); });
-  watched("gamma");
   state.errors.clear();
   state.iterations = 0;
   state.pressure.begin(state);
@@ -158,8 +201,7 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
     watched("lambda");
-    if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
-      break;
+    if (state.iterations >= minIterations && state.errors.back().mean <= parameters.tolerance) break;
     if (state.iterations >= parameters.maxIterations) break;
     const bool overRelaxed = parameters.acceleration == Acceleration::chebyshev;
     const float weight = overRelaxed ? chebyshev.next(state.errors, parameters.tolerance) : 1;
@@ -180,15 +222,74 @@ void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& wat
   }
 }
 
+/// The predicted positions are there: neighbours and gamma of them, and the constraint solved.
+void solvePrediction(StepState& state, EffectPipeline& effects, const Watch& watch) {
+  listNeighbours(state);
+  if (watch) watch("neighbours");
+  effects.changePrediction(state, watch);
+  state.times.time("gamma", [&] { stages::evaluateGamma(state); });
+  if (watch) watch("gamma");
+  solveConstraint(state, effects, state.parameters.minIterations, watch);
+}
+
+/// The velocities of the step by a pressure, and the positions that they lead to.
+void projectAndMove(StepState& state, EffectPipeline& effects, const Watch& watch) {
+  const auto watched = [&](std::string_view stage) {
+    if (watch) watch(stage);
+  };
+  state.projectedPressure.resize(state.particles.size(), 0);
+  takePositions(state);
+  listNeighbours(state);
+  if (state.spreadParticles > 0) stages::acceptPositions(state);
+  watched("neighbours");
+  state.times.time("predict", [&] { stages::predict(state); });
+  watched("predict");
+  effects.changePrediction(state, watch);
+  state.times.time("predict", [&] {
+    if (state.guards) state.before.velocity = state.particles.velocity;
+    stages::takeVelocities(state);
+    takePositions(state);
+  });
+  state.times.time("gamma", [&] { stages::evaluateGamma(state); });
+  watched("gamma");
+  state.times.time("pressure", [&] { stages::projectVelocities(state); });
+  watched("pressure");
+  state.times.time("move", [&] {
+    stages::moveAlong(state);
+    stages::takeVelocities(state);
+    if (state.gammaMethod != nullptr && !state.boundary.empty()) stages::refreshGamma(state);
+  });
+  watched("move");
+}
+
 /// The part of a step that keeps the particles' own positions. Gravity is in the velocities afterwards.
 void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& watch) {
   state.wallWork.clear();
   state.effectWork = 0;
-  state.times.time("predict", [&] { stages::predict(state); });
-  if (watch) watch("predict");
-  solveConstraint(state, effects, watch);
-  state.times.time("velocity", [&] { stages::projectAll(state); });
+  if (state.projects()) {
+    projectAndMove(state, effects, watch);
+    // What moves positions alone gives no speed, and so is no work.
+    const WallWork work = state.wallWork;
+    const double effectWork = state.effectWork;
+    solveConstraint(state, effects, 0, watch);
+    state.times.time("velocity", [&] { stages::projectAll(state); });
+    state.wallWork = work, state.effectWork = effectWork;
+  } else {
+    state.times.time("predict", [&] { stages::predict(state); });
+    if (watch) watch("predict");
+    solvePrediction(state, effects, watch);
+    state.times.time("velocity", [&] { stages::projectAll(state); });
+  }
   if (watch) watch("projection");
+}
+
+/// The solved positions, and the velocities that go with them; what was before is kept if `keep`.
+void takeSolution(StepState& state, bool keep) {
+  if (state.projects()) {
+    stages::updatePositions(state);
+  } else {
+    stages::updateVelocities(state, keep);
+  }
 }
 
 /// Takes back velocities and positions that stages::updateVelocities has kept.
@@ -266,12 +367,14 @@ StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
   state.times.time("velocity", [&] {
     refusal.notFinite = state.guards && !endsFinite(state);
     if (state.guards && !refusal.notFinite) refusal.overConstrained = findOverConstrained(state);
-    if (!refusal.any()) stages::updateVelocities(state, state.guards);
+    if (!refusal.any()) takeSolution(state, state.guards);
   });
   if (!refusal.any()) {
     if (effects.changeVelocities(state, {}) || !state.guards) return refusal;
     refusal.notFinite = true;
     undoUpdate(state);
+  } else if (state.projects()) {
+    state.particles.velocity.swap(state.before.velocity);
   }
   undoPrediction(state);
   return refusal;
@@ -282,10 +385,12 @@ StepFault findFault(StepState& state, EffectPipeline& effects) {
   finder.begin();
   predictAndSolve(state, effects, [&](std::string_view stage) { finder.after(stage); });
   if (!finder.found()) {
-    stages::updateVelocities(state, true);
+    takeSolution(state, true);
     finder.afterVelocities("velocity");
     effects.changeVelocities(state, [&](std::string_view effect) { finder.afterVelocities(effect); });
     undoUpdate(state);
+  } else if (state.projects()) {
+    state.particles.velocity.swap(state.before.velocity);
   }
   undoPrediction(state);
   return finder.result();
@@ -304,7 +409,7 @@ void relax(StepState& state) {
   for (int solve = 0; solve < kMostSolves; ++solve) {
     takePositions(state);
     stages::projectAll(state);
-    solveConstraint(state, none, {});
+    solvePrediction(state, none, {});
     stages::projectAll(state);
     stages::acceptPositions(state);
     // With the neighbours of where particles are now: those of the solve are not, after a long way.

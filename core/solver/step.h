@@ -160,10 +160,19 @@ IterationError computeLambda(StepState& state);
 /// Moves the predicted positions by [FM] Eq. 10 in the form that the parameters name, `weight` times as far
 /// from the positions of the previous iteration (1: Eq. 10 itself).
 void movePositions(StepState& state, float weight = 1);
+/// Takes the divergence out of the velocities where water is, at the positions state.current, by a pressure:
+/// see projection_simd.cpp. Needs neighbours and gamma there.
+void projectVelocities(StepState& state);
 /// Puts the particles near walls back on the fluid side.
 void projectNearWalls(StepState& state);
 /// The same for every particle: one that was far from the walls may have crossed one in a single move.
 void projectAll(StepState& state);
+/// v = (x* - x) / dt.
+void takeVelocities(StepState& state);
+/// x* = x + v dt, kept on the fluid side of the walls.
+void moveAlong(StepState& state);
+/// x = x*, velocities stay. What was before is kept in state.before.
+void updatePositions(StepState& state);
 /// v = (x* - x) / dt, x = x*. What was before is kept in state.before if `keep`.
 void updateVelocities(StepState& state, bool keep);
 /// Takes over the solved positions and leaves the velocities alone.

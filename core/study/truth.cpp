@@ -19,10 +19,27 @@ std::optional<double> TruthAnswer::error() const {
   return (*found - known) / (scale > 0 ? scale : known);
 }
 
+TruthSetting projected(TruthSetting setting) {
+  setting.label += ", projection";
+  for (const char* override :
+       {"/solver/velocity_step=projection", "/solver/kernel=wendland_c2", "/solver/support_ratio=2.25"})
+    setting.overrides.emplace_back(override);
+  return setting;
+}
+
 const std::vector<TruthCase>& truthCases() {
   static const std::vector<TruthCase> all = [] {
     std::vector<TruthCase> cases = truthWaves();
     for (TruthCase& flow : truthFlows()) cases.push_back(std::move(flow));
+    // What other settings try beside particle spacings belongs to velocities from positions.
+    for (TruthCase& one : cases) {
+      const std::vector<TruthSetting> settings = one.settings;
+      for (const TruthSetting& setting : settings)
+        if (std::all_of(setting.overrides.begin(), setting.overrides.end(), [](const std::string& override) {
+              return override.starts_with("/particle_spacing=");
+            }))
+          one.settings.push_back(projected(setting));
+    }
     return cases;
   }();
   return all;

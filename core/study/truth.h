@@ -55,6 +55,9 @@ struct TruthSetting {
   std::vector<std::string> overrides;  ///< as --set takes them
 };
 
+/// The setting with velocities by projection and the kernel that this asks for; "projection" in its label.
+TruthSetting projected(TruthSetting setting);
+
 struct TruthCase {
   std::string name;   ///< of the scene in scenes/truth, without .json
   std::string known;  ///< what is known, and from where

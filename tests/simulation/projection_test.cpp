@@ -1,0 +1,228 @@
+// Velocities by projection against closed forms: pressure of water at rest, a standing wave, free fall; and
+// what every step has to keep: momentum of flight, determinism, state.
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
+#include "core/simulation/measures.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/state.h"
+#include "tests/support/test_scenes.h"
+
+namespace migiwa {
+namespace {
+
+using namespace migiwa::testing;
+
+Scene projected(Scene scene) {
+  scene.solver.velocityStep = VelocityStep::projection;
+  scene.solver.kernel = KernelType::wendlandC2;
+  scene.solver.supportRatio = 2.25;
+  return scene;
+}
+
+/// A tank 1 m long and 0.2 m wide, water to 0.5 + 0.05 cos(pi x) m.
+Scene standingWave(double spacing, double timeStep) {
+  Scene scene = emptyScene();
+  scene.particleSpacing = spacing;
+  scene.solver.timeStep = timeStep;
+  scene.gravity = {0, -9.81, 0};
+  scene.effects = effectsOf(R"({"viscosity": {"xsph": 0.05}})");
+  addTank(scene, Vec3d::Zero(), {1, 1, 0.2});
+  const long columns = std::lround(1 / spacing);
+  for (long k = 0; k < columns; ++k) {
+    const double left = static_cast<double>(k) * spacing;
+    const double height = 0.5 + 0.05 * std::cos(std::numbers::pi * (left + 0.5 * spacing));
+    addFluid(scene, {left, 0, 0}, {left + spacing, spacing * std::round(height / spacing), 0.2});
+  }
+  return scene;
+}
+
+double meanX(const FrameView& view) {
+  double sum = 0;
+  for (const Float4& p : view.positions) sum += static_cast<double>(p.x);
+  return sum / static_cast<double>(view.positions.size()) - 0.5;
+}
+
+struct Swing {
+  std::vector<double> times, heights;  ///< of the extrema
+};
+
+/// Extrema of the centre of mass, each the largest deviation within 0.3 s around it.
+Swing swing(Simulation& simulation, double duration) {
+  std::vector<double> times, values;
+  const double dt = simulation.scene().solver.timeStep;
+  for (double t = dt; t < duration; t += dt) {
+    simulation.advanceFrame();
+    times.push_back(t), values.push_back(meanX(simulation.view()));
+  }
+  Swing found;
+  const auto reach = static_cast<std::size_t>(std::lround(0.3 / dt));
+  for (std::size_t k = reach; k + reach < values.size(); ++k) {
+    bool extreme = true;
+    for (std::size_t other = k - reach; other <= k + reach; ++other)
+      extreme = extreme && std::abs(values[other]) <= std::abs(values[k]);
+    if (extreme && (found.times.empty() || times[k] > found.times.back() + 0.3))
+      found.times.push_back(times[k]), found.heights.push_back(values[k]);
+  }
+  return found;
+}
+
+// Linear theory: T = 2 pi / sqrt(g k tanh(k d)) with k = pi / 1 m, d = 0.5 m, and nothing is lost.
+TEST(Projection, AStandingWaveKeepsItsHeightAndPeriod) {
+  constexpr double kPi = std::numbers::pi;
+  const double period = 2 * kPi / std::sqrt(9.81 * kPi * std::tanh(0.5 * kPi));
+  for (const double timeStep : {0.0025, 0.005, 0.01}) {
+    SCOPED_TRACE(timeStep);
+    Simulation simulation(projected(standingWave(0.05, timeStep)));
+    const Swing found = swing(simulation, 4.4);
+    ASSERT_GE(found.times.size(), 5U);
+    EXPECT_NEAR((found.times[4] - found.times[0]) / 2, period, 0.04 * period);
+    const double kept = std::sqrt(found.heights[4] / found.heights[0]);
+    EXPECT_GT(kept, 0.75);
+    EXPECT_LT(kept, 1.02);
+    EXPECT_FALSE(simulation.statistics().failed());
+  }
+}
+
+// p = rho g z, at the floor of a tank a metre deep as in one of half a metre, in every frame.
+TEST(Projection, WaterAtRestHasThePressureOfItsDepth) {
+  for (const int layers : {10, 20}) {
+    SCOPED_TRACE(layers);
+    Simulation simulation(projected(stillTank({8, layers, 8})));
+    simulation.watchPressure(true);
+    const double depth = kSpacing * layers;
+    double squares = 0;
+    long samples = 0;
+    for (int frame = 0; frame < 400; ++frame) {
+      simulation.advanceFrame();
+      if (frame < 200) continue;
+      const FrameView view = simulation.view();
+      for (std::size_t i = 0; i < view.positions.size(); ++i) {
+        const double y = static_cast<double>(view.positions[i].y);
+        // A first layer half a spacing deep is nearer to the surface than its particles are apart.
+        if (y > depth - 2 * kSpacing) continue;
+        const double error = static_cast<double>(view.pressure[i]) - 1000 * 9.81 * (depth - y);
+        squares += error * error, ++samples;
+      }
+    }
+    // Less than the weight of a third of a layer, however deep the water is.
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(samples)), 1000 * 9.81 * 0.35 * kSpacing);
+  }
+}
+
+TEST(Projection, WaterAtRestStaysAtRestAndFillsItsTank) {
+  Simulation simulation(projected(stillTank({16, 15, 16})));
+  const SettledMeasures settled = runUntil(simulation, 2.5);
+  EXPECT_NEAR(*settled.height / *settled.expectedHeight, 1, 0.01);
+  EXPECT_GE(*settled.edgeCrowding, 0.9);
+  EXPECT_LE(*settled.edgeCrowding, 1.10);
+  EXPECT_LT(*settled.rmsSpeed, 0.015);
+  EXPECT_FALSE(simulation.statistics().failed());
+}
+
+// As for velocities from positions: x_n = x_0 + n dt v_0 + dt^2 g n (n + 1) / 2.
+TEST(Projection, FreeFallIsThatOfSymplecticEuler) {
+  Scene scene = projected(emptyScene());
+  scene.gravity = {0, -9.81, 0};
+  addFluid(scene, {0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 1, 0});
+  Simulation simulation(scene, 1);
+  const std::vector<Float4> start(simulation.view().positions.begin(), simulation.view().positions.end());
+  constexpr int kSteps = 60;
+  for (int k = 0; k < kSteps; ++k) simulation.advanceFrame();
+  const double dt = scene.solver.timeStep;
+  const Vec3d way = kSteps * dt * Vec3d(0.5, 1, 0) + dt * dt * scene.gravity * (0.5 * kSteps * (kSteps + 1));
+  Vec3d moved = Vec3d::Zero();
+  for (const Float4& p : simulation.view().positions) moved += p.xyz().cast<double>();
+  for (const Float4& p : start) moved -= p.xyz().cast<double>();
+  moved /= static_cast<double>(start.size());
+  EXPECT_LT((moved - way).norm(), 5e-5);
+}
+
+std::uint64_t hashAfter(const Scene& scene, int frames, int threads) {
+  Simulation simulation(scene, threads);
+  for (int k = 0; k < frames; ++k) simulation.advanceFrame();
+  return simulation.stateHash();
+}
+
+TEST(Projection, TheStateIsTheSameForAnyNumberOfThreads) {
+  const Scene scene = projected(smallDamBreak());
+  const std::uint64_t alone = hashAfter(scene, 60, 1);
+  EXPECT_EQ(hashAfter(scene, 60, 2), alone);
+  EXPECT_EQ(hashAfter(scene, 60, 5), alone);
+}
+
+TEST(Projection, ASavedStateGoesOnAsIfNothingHadHappened) {
+  const Scene scene = projected(smallDamBreak());
+  Simulation straight(scene, 1);
+  for (int k = 0; k < 30; ++k) straight.advanceFrame();
+  const StateImage image = StateImage::of(straight);
+  Simulation resumed(scene, 2);
+  image.restore(resumed);
+  for (int k = 0; k < 30; ++k) straight.advanceFrame(), resumed.advanceFrame();
+  EXPECT_EQ(straight.stateHash(), resumed.stateHash());
+}
+
+// A state without a pressure of its own goes on with one, and the other way round.
+TEST(Projection, CanBeSwitchedOnAndOffInARun) {
+  const Scene scene = projected(smallDamBreak());
+  Scene positions = scene;
+  positions.solver.velocityStep = VelocityStep::positions;
+  Simulation simulation(positions, 1);
+  for (int k = 0; k < 20; ++k) simulation.advanceFrame();
+  for (const VelocityStep step : {VelocityStep::projection, VelocityStep::positions}) {
+    Simulation other(step == VelocityStep::projection ? scene : positions, 1);
+    StateImage::of(simulation).restore(other);
+    for (int k = 0; k < 20; ++k) other.advanceFrame();
+    EXPECT_FALSE(other.statistics().failed());
+    EXPECT_GT(other.view().info.energy.size(), 0U);
+  }
+}
+
+TEST(Projection, ParticlesThatComeAndGoKeepTheirPressures) {
+  Scene scene = projected(emptyScene());
+  scene.gravity = {0, -9.81, 0};
+  addTank(scene, Vec3d::Zero(), {0.6, 0.8, 0.6});
+  addFluid(scene, Vec3d::Zero(), {0.6, 0.3, 0.6});
+  Emitter emitter;
+  emitter.shape = MouthShape::rectangle;
+  emitter.center = {0.3, 0.7, 0.3};
+  emitter.direction = {0, -1, 0};
+  emitter.size = {0.2, 0.2};
+  emitter.speed = 1;
+  scene.emitters.push_back(emitter);
+  Drain drain;
+  drain.min = {0, 0.32, 0}, drain.max = {0.6, 0.4, 0.6};
+  scene.drains.push_back(drain);
+  Simulation simulation(scene, 2);
+  for (int k = 0; k < 200; ++k) simulation.advanceFrame();
+  const RunStatistics& run = simulation.statistics();
+  EXPECT_FALSE(run.failed());
+  EXPECT_EQ(run.lostParticles, 0);
+  EXPECT_GT(run.fluid.drained(), 100);
+  EXPECT_LT(run.maxSpeed, 5);
+}
+
+// One kernel has to serve density, gamma and forces alike.
+TEST(Projection, AsksForAKernelWhoseOwnGradientMovesParticles) {
+  try {
+    static_cast<void>(parseScene(R"({"format": 1, "name": "n", "particle_spacing": 0.1,
+      "fluid": [{"shape": "box", "min": [0, 0, 0], "max": [1, 1, 1]}],
+      "boundary": {"surfaces": []}, "solver": {"velocity_step": "projection"}})",
+                                 "test.json"));
+    ADD_FAILURE() << "poly6 was accepted";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("/solver/velocity_step"), std::string::npos) << text;
+    EXPECT_NE(text.find("wendland_c2"), std::string::npos) << text;
+    EXPECT_NE(text.find("poly6"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace migiwa
