@@ -8,34 +8,36 @@ import os
 from typing import Any, Mapping, NamedTuple, Optional, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _core
 from ._errors import InputError
 
 Path = Union[str, "os.PathLike[str]"]
+Floats = NDArray[numpy.float64]
 
 
 class Walls(NamedTuple):
     """What walls are at N points."""
 
-    gamma: numpy.ndarray
+    gamma: Floats
     """The part of the kernel's support that no solid covers, shape (N,)."""
-    gradient: numpy.ndarray
+    gradient: Floats
     """Its gradient (1/m), shape (N, 3)."""
-    distance: numpy.ndarray
+    distance: Floats
     """To the nearest wall (m), positive in the fluid, shape (N,); infinite without walls."""
 
 
 class Distances(NamedTuple):
     """Where a wall or a surface is, seen from N points."""
 
-    distance: numpy.ndarray
+    distance: Floats
     """Signed (m), shape (N,): positive in the fluid, or outside of a surface."""
-    normal: numpy.ndarray
+    normal: Floats
     """Unit normal at the nearest point, shape (N, 3), into the fluid or outwards."""
 
 
-def points_of(points: Any, name: str = "points") -> numpy.ndarray:
+def points_of(points: Any, name: str = "points") -> Floats:
     """The points as float64, shape (N, 3). Raises ValueError or TypeError for anything else."""
     array = numpy.asarray(points)
     if array.dtype.kind not in "fiu":

@@ -8,10 +8,13 @@ from types import TracebackType
 from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _core
 from ._errors import MissingError
 from ._scene import Path, Scene
+
+Floats32 = NDArray[numpy.float32]
 
 
 class Trouble(NamedTuple):
@@ -88,7 +91,7 @@ class Simulation:
         """
         self._simulation._apply(self.scene.changed(changes)._scene)
 
-    def on_velocities(self, callback: Callable[[numpy.ndarray, numpy.ndarray, float], None]) -> None:
+    def on_velocities(self, callback: Callable[[Floats32, Floats32, float], None]) -> None:
         """Has ``callback(velocities, positions, dt)`` change velocities (m/s) in place, in every substep of dt (s).
 
         This is where effects act on velocities: after the density was corrected, so a force adds acceleration times dt.
@@ -100,46 +103,46 @@ class Simulation:
         self._simulation._on_velocities(callback)
 
     @property
-    def positions(self) -> numpy.ndarray:
+    def positions(self) -> Floats32:
         """Positions (m) relative to ``scene.origin``, float32, shape (N, 3); rows are 16 bytes apart."""
         return self._simulation.positions
 
     @property
-    def velocities(self) -> numpy.ndarray:
+    def velocities(self) -> Floats32:
         """Velocities (m/s), float32, shape (N, 3); rows are 16 bytes apart."""
         return self._simulation.velocities
 
     @property
-    def density(self) -> numpy.ndarray:
+    def density(self) -> Floats32:
         """Density over that at rest (1), after the last iteration, float32, shape (N,)."""
         return self._simulation.density
 
     @property
-    def gamma(self) -> numpy.ndarray:
+    def gamma(self) -> Floats32:
         """The part of each particle's support that no solid covers (1), float32, shape (N,)."""
         return self._simulation.gamma
 
     @property
-    def lambda_(self) -> numpy.ndarray:
+    def lambda_(self) -> Floats32:
         """lambda of the last iteration times the squared support radius (1), float32, shape (N,)."""
         return self._simulation.lambda_
 
     @property
-    def pressure(self) -> numpy.ndarray:
+    def pressure(self) -> Floats32:
         """Pressure of the last step (Pa), float32, shape (N,); empty until ``watch_pressure`` and a step."""
         return self._simulation.pressure
 
     @property
-    def ids(self) -> numpy.ndarray:
+    def ids(self) -> NDArray[numpy.uint32]:
         """Numbers that tell particles apart from frame to frame, uint32, shape (N,)."""
         return self._simulation.ids
 
     @property
-    def neighbours(self) -> numpy.ndarray:
+    def neighbours(self) -> NDArray[numpy.uint32]:
         """How many neighbours each particle has, uint32, shape (N,): a copy."""
         return self._simulation.neighbours
 
-    def is_current(self, array: numpy.ndarray) -> bool:
+    def is_current(self, array: NDArray[Any]) -> bool:
         """Whether an array, or a part of one, shows the memory of the present frame."""
         return self._simulation._is_current(array)
 
@@ -197,7 +200,7 @@ class Simulation:
 
     def render(
         self, size: tuple[int, int] = (1280, 720), *, view: Optional[Mapping[str, Any]] = None, panels: bool = False
-    ) -> numpy.ndarray:
+    ) -> NDArray[numpy.uint8]:
         """A picture as ``migiwa render`` draws it: uint8, shape (height, width, 3). Needs EGL, and no display.
 
         ``size``: width and height (pixels). ``view``: keys of the scene's view, such as {"color": "gamma"}. Raises

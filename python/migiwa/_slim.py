@@ -5,20 +5,18 @@ from __future__ import annotations
 import os
 from typing import Any, NamedTuple, Optional
 
-import numpy
-
 from . import _core
-from ._scene import Distances, Path, points_of
+from ._scene import Distances, Floats, Path, points_of
 
 
 class SlimValues(NamedTuple):
     """What the blended polynomials say at N points."""
 
-    value: numpy.ndarray
+    value: Floats
     """f (m), shape (N,): zero on the surface; not a distance."""
-    weight: numpy.ndarray
+    weight: Floats
     """Sum of the balls' weights, shape (N,); 0 where no ball reaches."""
-    gradient: numpy.ndarray
+    gradient: Floats
     """Of f, shape (N, 3)."""
 
 
@@ -82,12 +80,12 @@ class SlimSurface:
         return SlimValues(*self._surface._values(points_of(points)))
 
     @property
-    def centres(self) -> numpy.ndarray:
+    def centres(self) -> Floats:
         """Of the balls (m), shape (len, 3)."""
         return self._surface._nodes()[0]
 
     @property
-    def radii(self) -> numpy.ndarray:
+    def radii(self) -> Floats:
         """Of the balls (m), shape (len,)."""
         return self._surface._nodes()[1]
 
