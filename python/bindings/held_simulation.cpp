@@ -271,7 +271,7 @@ py::array HeldSimulation::view(FrameArray which) {
     throw std::logic_error("no such array");
   };
   py::array array = make();
-  array.attr("setflags")(py::arg("write") = false);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
 
@@ -344,19 +344,21 @@ void HeldSimulation::writeParticles(const std::string& file, const std::string& 
   std::string names;
   for (const ParticleFieldInfo& info : particleFields())
     names += (names.empty() ? "" : ", ") + std::string(info.name);
-  for (const std::string& field : fields)
-    if (std::ranges::none_of(particleFields(),
-                             [&](const ParticleFieldInfo& info) { return info.name == field; }))
-      throw py::value_error("expected some of " + names + " for fields, found \"" + field + "\"");
-  for (const ParticleFormat& known : particleFormats()) {
-    if (known.name != format) continue;
-    if (!fields.empty() && !known.holdsFields)
+  const auto known = [](const std::string& field) {
+    return std::ranges::any_of(particleFields(),
+                               [&](const ParticleFieldInfo& info) { return info.name == field; });
+  };
+  if (const auto unknown = std::ranges::find_if_not(fields, known); unknown != fields.end())
+    throw py::value_error("expected some of " + names + " for fields, found \"" + *unknown + "\"");
+  for (const ParticleFormat& candidate : particleFormats()) {
+    if (candidate.name != format) continue;
+    if (!fields.empty() && !candidate.holdsFields)
       throw py::value_error("expected no fields in a file of the format " + format +
                             ", which holds positions only");
     ParticleFrame frame =
         copyParticles(simulation.view(), simulation.frame(), fields, simulation.scene().origin);
     frame.sortById();
-    return writeTextFile(file, known.text(frame));
+    return writeTextFile(file, candidate.text(frame));
   }
   throw py::value_error("expected a file that ends in .ply, .vtk or .obj, found \"" + file + "\"");
 }
