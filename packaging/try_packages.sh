@@ -26,7 +26,7 @@ import migiwa
 print('picture from Python:', migiwa.Simulation(migiwa.Scene.read('$scenes/corner_drop.json')).render((320, 180)).shape)"
 [[ -s /usr/share/applications/migiwa.desktop && -s /usr/share/icons/hicolor/scalable/apps/migiwa.svg ]]
 [[ -s $scenes/scene.schema.json ]]
-dpkg -c "$packages"/migiwa_*.deb | grep -q usr/share/man/man1/migiwa.1
+[[ $(dpkg -c "$packages"/migiwa_*.deb) == *usr/share/man/man1/migiwa.1* ]]
 bash -ec 'source /usr/share/bash-completion/completions/migiwa
   COMP_WORDS=(migiwa sim) COMP_CWORD=1; _migiwa; [[ ${COMPREPLY[*]} == simulate ]]
   COMP_WORDS=(migiwa render --co) COMP_CWORD=2; _migiwa; [[ ${COMPREPLY[*]} == --compare ]]'
