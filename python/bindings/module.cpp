@@ -26,6 +26,7 @@ void raiseMissingError(const MissingError& error) {
   PyErr_SetObject(type.ptr(), type(error.what()).ptr());
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 names the type
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);

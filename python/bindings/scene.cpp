@@ -19,7 +19,8 @@ using Changes = std::vector<std::pair<std::string, std::string>>;
 /// Of (pointer, JSON text).
 std::vector<Override> overridesOf(const Changes& changes) {
   std::vector<Override> overrides;
-  for (const auto& [pointer, value] : changes) overrides.push_back(Override::parse(pointer + "=" + value));
+  for (const auto& [pointer, value] : changes)
+    overrides.push_back(Override::parse(std::string(pointer).append("=").append(value)));
   return overrides;
 }
 
@@ -52,7 +53,7 @@ py::tuple distancesAt(const Scene& scene, const PointArray& array) {
       Vec3f normal;
       distances.push_back(
           static_cast<double>(boundary.distance((point - scene.origin).cast<float>(), normal)));
-      normals.push_back(normal.cast<double>());
+      normals.emplace_back(normal.cast<double>());
     }
   }
   return py::make_tuple(arrayOf(distances), arrayOf(normals));

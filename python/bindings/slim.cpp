@@ -91,7 +91,7 @@ py::tuple distancesOf(const SlimFitted& surface, const PointArray& array) {
     for (const Vec3d& point : points) {
       const SlimModel::Nearest nearest = surface.model().nearest(point.cast<float>());
       distances.push_back(static_cast<double>(nearest.distance));
-      normals.push_back(nearest.normal.cast<double>());
+      normals.emplace_back(nearest.normal.cast<double>());
     }
   }
   return py::make_tuple(arrayOf(distances), arrayOf(normals));
@@ -105,7 +105,7 @@ py::tuple valuesOf(const SlimFitted& surface, const PointArray& array) {
     const SlimModel::Value value = surface.model().evaluate(point.cast<float>());
     values.push_back(static_cast<double>(value.f));
     weights.push_back(static_cast<double>(value.weight));
-    gradients.push_back(value.gradient.cast<double>());
+    gradients.emplace_back(value.gradient.cast<double>());
   }
   return py::make_tuple(arrayOf(values), arrayOf(weights), arrayOf(gradients));
 }
@@ -115,7 +115,7 @@ py::tuple nodesOf(const SlimFitted& surface) {
   std::vector<Vec3d> centres;
   std::vector<double> radii;
   for (const SlimNode& node : surface.model().nodes()) {
-    centres.push_back(node.centre.cast<double>());
+    centres.emplace_back(node.centre.cast<double>());
     radii.push_back(static_cast<double>(node.radius));
   }
   return py::make_tuple(arrayOf(centres), arrayOf(radii));
