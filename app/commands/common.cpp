@@ -360,9 +360,10 @@ std::filesystem::path shippedPlace(const std::filesystem::path& name, const std:
   if (std::filesystem::exists(name, error)) return name;
   for (std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
        folder.has_relative_path(); folder = folder.parent_path())
-    if (std::filesystem::exists(folder / name, error)) return folder / name;
+    for (const std::filesystem::path& place : {folder / name, folder / "share" / "migiwa" / name})
+      if (std::filesystem::exists(place, error)) return place;
   throw InputError(option, "expected " + what + ", found none given and no " + name.string() +
-                               " here or in a folder above the program");
+                               " here, in a folder above the program or in its share/migiwa");
 }
 
 // `migiwa view [SCENE]`: the window.

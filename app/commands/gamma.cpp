@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/gamma/gamma_method.h"
 #include "core/io/points_csv.h"
+#include "core/simulation/gauges.h"
 
 namespace migiwa {
 
@@ -24,53 +25,25 @@ struct GammaOptions {
   bool allMethods = false;
 };
 
-GammaContext contextOf(const Scene& scene, const Boundary& boundary, ThreadPool& pool) {
-  return {boundary,
-          scene.solver.kernel,
-          static_cast<float>(scene.supportRadius()),
-          scene.boundary.directions,
-          scene.boundary.samples,
-          scene.bounds(),
-          &pool,
-          scene.file.string() + ":/boundary/gamma/method",
-          static_cast<float>(scene.particleSpacing)};
-}
-
-/// What corrects the density at the scene's walls; without any correction, the gamma that it leaves out.
-PickedGamma methodOf(const Scene& scene, const GammaContext& context) {
-  PickedGamma picked = makeHandling(scene.boundary.handling, scene.boundary.gammaMethod, context);
-  return picked.method ? std::move(picked) : makeGammaMethod(scene.boundary.gammaMethod, context);
-}
-
 /// Of coordinates: more than `near` where a scene is far from zero.
 int digitsAt(const Scene& scene, int near) {
   constexpr int kFar = 15;
   return scene.origin.isZero(0) ? near : kFar;
 }
 
-void evaluatePoints(const GammaOptions& options, const Scene& scene, ThreadPool& pool) {
+void evaluatePoints(const GammaOptions& options, const Scene& scene, const CommonOptions& common) {
   requireWritable(options.out, "--out");
   const std::vector<Vec3d> points = readPoints(options.points);
-  const Boundary boundary(wallsFor(scene.surfaces, static_cast<float>(scene.supportRadius())));
-  const GammaContext context = contextOf(scene, boundary, pool);
-  const PickedGamma picked = methodOf(scene, context);
-  std::vector<Float4> at(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) at[i] = Float4((points[i] - scene.origin).cast<float>());
-  std::vector<GammaSample> samples(points.size());
-  parallelFor(pool, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    picked.method->evaluate(std::span(at).subspan(begin, end - begin),
-                            std::span(samples).subspan(begin, end - begin));
-  });
+  const std::vector<WallAnswer> answers = WallQuery(scene, common.threads).answers(points);
   const int digits = digitsAt(scene, 9);
   std::string text = "x,y,z,gamma,gradient_x,gradient_y,gradient_z,distance\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3d& p = points[i];
-    const Vec3f gradient = samples[i].gradient / context.supportRadius;
+    const WallAnswer& wall = answers[i];
     char row[256];
     std::snprintf(row, sizeof row, "%.*g,%.*g,%.*g,%.7g,%.7g,%.7g,%.7g,%.7g\n", digits, p.x(), digits, p.y(),
-                  digits, p.z(), static_cast<double>(samples[i].gamma), static_cast<double>(gradient.x()),
-                  static_cast<double>(gradient.y()), static_cast<double>(gradient.z()),
-                  static_cast<double>(samples[i].distance));
+                  digits, p.z(), wall.gamma, wall.gradient.x(), wall.gradient.y(), wall.gradient.z(),
+                  wall.distance);
     text += row;
   }
   writeTextFile(options.out, text);
@@ -217,7 +190,7 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
   const std::string stem = (folder / (scene.stem() + (options.allMethods ? "_methods" : "_gamma"))).string();
   requireWritable(stem + ".csv", "--map");
 
-  GammaContext context = contextOf(scene, boundary, pool);
+  GammaContext context = gammaContextOf(scene, boundary, pool);
   context.region = {};
   context.region.include(window.point(0, 0));
   context.region.include(window.point(window.columns - 1, window.rows - 1));
@@ -240,7 +213,7 @@ void drawMap(const GammaOptions& options, const Scene& scene, ThreadPool& pool) 
       panels.push_back({titled("error", maps.back()), maps.back().error, true});
     }
   } else {
-    maps.push_back(mapOf(methodOf(scene, context), reference, boundary, window, pool));
+    maps.push_back(mapOf(gammaMethodOf(scene, context), reference, boundary, window, pool));
     panels.push_back({"γ, " + maps.back().name, maps.back().gamma, false});
     panels.push_back({titled("error", maps.back()), maps.back().error, true});
   }
@@ -263,9 +236,11 @@ int gamma(const GammaOptions& options, const CommonOptions& common) {
     faults.push_back({"gamma", "expected --points IN.csv --out OUT.csv, or --map DIR, found neither"});
   if (!faults.empty()) throw InputError(std::move(faults));
   const Scene scene = readScene(options.scene, common.overrides);
-  ThreadPool pool(common.threads);
-  if (!options.points.empty()) evaluatePoints(options, scene, pool);
-  if (!options.map.empty()) drawMap(options, scene, pool);
+  if (!options.points.empty()) evaluatePoints(options, scene, common);
+  if (!options.map.empty()) {
+    ThreadPool pool(common.threads);
+    drawMap(options, scene, pool);
+  }
   return kDone;
 }
 

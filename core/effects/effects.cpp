@@ -1,34 +1,34 @@
 #include "core/effects/effects.h"
 
-#include <array>
-
-#include "core/base/fields.h"
+#include "core/base/registry.h"
 
 namespace migiwa {
 
 namespace {
 
-struct Entry {
-  std::string_view name;
-  std::unique_ptr<Effect> (*make)();
-};
-
-constexpr std::array kEffects{
-    Entry{"viscosity", makeViscosity},
-    Entry{"vorticity_confinement", makeVorticityConfinement},
-    Entry{"surface_tension", makeSurfaceTension},
-    Entry{"artificial_pressure", makeArtificialPressure},
-    Entry{"wall_friction", makeWallFriction},
-};
+Registry<Effect>& effects() {
+  static Registry<Effect> all("an effect", {
+                                               {"viscosity", makeViscosity},
+                                               {"vorticity_confinement", makeVorticityConfinement},
+                                               {"surface_tension", makeSurfaceTension},
+                                               {"artificial_pressure", makeArtificialPressure},
+                                               {"wall_friction", makeWallFriction},
+                                           });
+  return all;
+}
 
 }  // namespace
 
 std::span<const std::string_view> effectNames() {
-  return registryNames<kEffects>();
+  return effects().names();
 }
 
 std::unique_ptr<Effect> makeEffect(int effect) {
-  return kEffects.at(static_cast<std::size_t>(effect)).make();
+  return effects().make(effect);
+}
+
+void registerEffect(const std::string& name, std::function<std::unique_ptr<Effect>()> make) {
+  effects().add(name, std::move(make));
 }
 
 }  // namespace migiwa

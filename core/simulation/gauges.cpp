@@ -158,4 +158,56 @@ void GaugeSeries::visit(StateVisitor& visitor, const std::string& name) {
   thinning.visit(visitor, name);
 }
 
+GammaContext gammaContextOf(const Scene& scene, const Boundary& boundary, ThreadPool& pool) {
+  return {boundary,
+          scene.solver.kernel,
+          static_cast<float>(scene.supportRadius()),
+          scene.boundary.directions,
+          scene.boundary.samples,
+          scene.bounds(),
+          &pool,
+          scene.file.string() + ":/boundary/gamma/method",
+          static_cast<float>(scene.particleSpacing)};
+}
+
+PickedGamma gammaMethodOf(const Scene& scene, const GammaContext& context) {
+  PickedGamma picked = makeHandling(scene.boundary.handling, scene.boundary.gammaMethod, context);
+  return picked.method ? std::move(picked) : makeGammaMethod(scene.boundary.gammaMethod, context);
+}
+
+WallQuery::WallQuery(const Scene& scene, int threads)
+    : origin_(scene.origin),
+      supportRadius_(static_cast<float>(scene.supportRadius())),
+      pool_(threads),
+      boundary_(wallsFor(scene.surfaces, supportRadius_)),
+      picked_(gammaMethodOf(scene, gammaContextOf(scene, boundary_, pool_))) {}
+
+std::vector<WallAnswer> WallQuery::answers(std::span<const Vec3d> points) {
+  std::vector<WallAnswer> answers(points.size());
+  parallelFor(pool_, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Float4> at;
+    for (std::size_t i = begin; i < end; ++i) at.emplace_back(Vec3f((points[i] - origin_).cast<float>()));
+    std::vector<GammaSample> samples(at.size());
+    picked_.method->evaluate(at, samples);
+    for (std::size_t i = begin; i < end; ++i) {
+      const GammaSample& sample = samples[i - begin];
+      answers[i] = {static_cast<double>(sample.gamma), (sample.gradient / supportRadius_).cast<double>(),
+                    static_cast<double>(sample.distance)};
+    }
+  });
+  return answers;
+}
+
+std::vector<Vec3d> WallQuery::normals(std::span<const Vec3d> points) {
+  std::vector<Vec3d> normals(points.size());
+  parallelFor(pool_, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3f normal;
+      boundary_.distance((points[i] - origin_).cast<float>(), normal);
+      normals[i] = normal.cast<double>();
+    }
+  });
+  return normals;
+}
+
 }  // namespace migiwa

@@ -1,9 +1,10 @@
-// What the gauges of a scene show at one moment.
+// What the gauges of a scene show at one moment, and what its walls are at any points.
 #pragma once
 
 #include <optional>
 #include <span>
 
+#include "core/base/parallel.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/gauge.h"
 #include "core/scene/scene.h"
@@ -55,5 +56,42 @@ class GaugeReader {
   Vec3d gravity_;                 ///< (m/s^2)
   double spacing_, restDensity_;  ///< (m, kg/m^3)
 };
+
+// The walls of a scene asked at any points, without a simulation: gamma, its gradient, distances and normals.
+
+/// What a wall is at a point of the scene's file.
+struct WallAnswer {
+  double gamma = 1;                ///< the part of the kernel's support that the solid does not cover
+  Vec3d gradient = Vec3d::Zero();  ///< grad gamma (1/m)
+  double distance = 0;             ///< to the nearest wall (m), positive in the fluid; infinite without walls
+};
+
+/// The walls of a scene, where they are at time 0, with the scene's gamma method or another one.
+class WallQuery {
+ public:
+  /// `threads` 0 takes what the machine has. Throws InputError where the method does not allow the walls.
+  explicit WallQuery(const Scene& scene, int threads = 0);
+  WallQuery(const WallQuery&) = delete;
+  WallQuery& operator=(const WallQuery&) = delete;
+
+  /// Of each point (m, in the coordinates of the scene's file).
+  std::vector<WallAnswer> answers(std::span<const Vec3d> points);
+  /// The unit normals, into the fluid, at the walls' nearest points; zero without walls.
+  std::vector<Vec3d> normals(std::span<const Vec3d> points);
+  /// Of the method that is asked: "auto" says what it has picked.
+  const std::string& method() const { return picked_.name; }
+
+ private:
+  Vec3d origin_;
+  float supportRadius_;
+  ThreadPool pool_;
+  Boundary boundary_;
+  PickedGamma picked_;
+};
+
+/// What a gamma method of the scene's walls is made of. `boundary` and `pool` stay with the caller.
+GammaContext gammaContextOf(const Scene& scene, const Boundary& boundary, ThreadPool& pool);
+/// What corrects the density at the scene's walls; without any correction, the gamma that it leaves out.
+PickedGamma gammaMethodOf(const Scene& scene, const GammaContext& context);
 
 }  // namespace migiwa

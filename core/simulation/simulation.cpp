@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/files.h"
@@ -195,6 +196,32 @@ FrameView Simulation::drawnView() const {
   if (!state_->drawnWalls) state_->drawnWalls = std::make_shared<const WallDrawing>(walls());
   result.walls = state_->drawnWalls;
   return result;
+}
+
+std::shared_ptr<const void> Simulation::detach(FrameArray array) {
+  const auto leave = [](auto& values) -> std::shared_ptr<const void> {
+    auto left = std::make_shared<std::remove_reference_t<decltype(values)>>(values);
+    left->swap(values);
+    return left;
+  };
+  StepState& step = state_->step;
+  switch (array) {
+    case FrameArray::positions:
+      return leave(step.particles.position);
+    case FrameArray::velocities:
+      return leave(step.particles.velocity);
+    case FrameArray::density:
+      return leave(step.density);
+    case FrameArray::gamma:
+      return leave(step.gamma);
+    case FrameArray::lambda:
+      return leave(step.lambda);
+    case FrameArray::pressure:
+      return leave(state_->pressure);
+    case FrameArray::ids:
+      return leave(step.particles.id);
+  }
+  return nullptr;
 }
 
 std::vector<Vec3f> Simulation::gammaGradients() const {

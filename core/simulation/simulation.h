@@ -27,6 +27,9 @@ struct Settings {
 /// there to compare with: no simulation can use it in every step.
 void requireSteppable(const BoundaryParameters& boundary, const std::filesystem::path& scene);
 
+/// The arrays of a FrameView that Simulation::detach() can hand over.
+enum class FrameArray { positions, velocities, density, gamma, lambda, pressure, ids };
+
 // A scene in motion. Owns the particles and the solver; knows nothing of windows, files and pictures.
 
 class StateVisitor;
@@ -58,6 +61,10 @@ class Simulation {
   /// The same for a picture: with the walls where some of them move. Their drawing is made when it is first
   /// asked for in a frame; a run without pictures makes none.
   FrameView drawnView() const;
+  /// Hands over the memory that view() shows of an array, and goes on in a copy. For who holds a span of it
+  /// beyond the next step or the end of the simulation: it stays valid as long as what is returned here, with
+  /// the values of now.
+  std::shared_ptr<const void> detach(FrameArray array);
   /// h grad gamma for the density kernel at each particle, in the order of view(); 0 where no wall is in
   /// reach.
   std::vector<Vec3f> gammaGradients() const;

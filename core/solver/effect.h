@@ -3,6 +3,7 @@
 // the step, its buffers are not allocated and its panel is not in the window.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -64,5 +65,9 @@ struct NamedEffect {
 /// in which they act.
 std::span<const std::string_view> effectNames();
 std::unique_ptr<Effect> makeEffect(int effect);
+/// Adds an effect from outside the library: from then on scenes may have its object under "effects". It acts
+/// after those that are there. Call it before the first scene is read. Throws std::invalid_argument for a
+/// name that is taken or no lower-case word.
+void registerEffect(const std::string& name, std::function<std::unique_ptr<Effect>()> make);
 
 }  // namespace migiwa

@@ -1,13 +1,13 @@
 #include "core/walls/boundary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/base/fields.h"
 #include "core/base/math.h"
+#include "core/base/registry.h"
 #include "core/walls/mesh_wall.h"
 #include "core/walls/shapes.h"
 #include "core/walls/slim_wall.h"
@@ -138,30 +138,36 @@ bool Boundary::project(Vec3f& p, float margin) const {
 
 namespace {
 
-struct Entry {
-  std::string_view name;
-  std::unique_ptr<Surface> (*make)();
-};
-
 template <class Shape>
 std::unique_ptr<Surface> make() {
   return std::make_unique<Shape>();
 }
 
-constexpr std::array kShapes{
-    Entry{"plane", make<Plane>},           Entry{"box", make<Box>},          Entry{"sphere", make<Sphere>},
-    Entry{"polynomial", make<Polynomial>}, Entry{"slim", make<SlimSurface>}, Entry{"mesh", make<MeshSurface>},
-    Entry{"group", make<GroupSurface>},
-};
+Registry<Surface>& shapes() {
+  static Registry<Surface> all("a shape", {
+                                              {"plane", make<Plane>},
+                                              {"box", make<Box>},
+                                              {"sphere", make<Sphere>},
+                                              {"polynomial", make<Polynomial>},
+                                              {"slim", make<SlimSurface>},
+                                              {"mesh", make<MeshSurface>},
+                                              {"group", make<GroupSurface>},
+                                          });
+  return all;
+}
 
 }  // namespace
 
 std::span<const std::string_view> surfaceShapes() {
-  return registryNames<kShapes>();
+  return shapes().names();
 }
 
 std::unique_ptr<Surface> makeSurface(int shape) {
-  return kShapes.at(static_cast<std::size_t>(shape)).make();
+  return shapes().make(shape);
+}
+
+void registerSurface(const std::string& name, std::function<std::unique_ptr<Surface>()> make) {
+  shapes().add(name, std::move(make));
 }
 
 Directions fibonacciDirections(int count) {
@@ -202,6 +208,25 @@ bool projectAlongNormals(const Surface& surface, Vec3f& p, float margin) {
   // To and fro between two parts of the wall: midway.
   p = 0.5F * (before + p);
   return true;
+}
+
+void DistanceSurface::firstHits(const Vec3f& origin, const Directions& directions,
+                                std::span<float> hits) const {
+  constexpr int kMostSteps = 128;
+  constexpr float kTouching = 1e-5F;
+  Vec3f normal;
+  const auto across = static_cast<float>(bounds().size().norm());
+  const float start = std::max(distance(origin, normal), 0.0F);
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const Vec3f direction(directions.x[k], directions.y[k], directions.z[k]);
+    float at = start, left = start;
+    for (int step = 0; step < kMostSteps && at < hits[k] && at < start + across && left > kTouching * across;
+         ++step) {
+      left = distance(origin + at * direction, normal);
+      at += std::max(left, 0.0F);
+    }
+    if (left <= kTouching * across) hits[k] = std::min(hits[k], at);
+  }
 }
 
 void Surface::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const {

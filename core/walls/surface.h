@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -308,9 +309,24 @@ class StandIn : public Surface {
   std::shared_ptr<const Surface> shape_;  ///< null: not read yet
 };
 
+/// A shape that knows its signed distance and its extent, which is finite, and nothing else: rays go ahead by
+/// distances, as far as the wall is at least. Its distances are those of a closed solid; too short ones cost
+/// time, too long ones miss the wall. Pictures show what `wireframe` or `mesh` draw: nothing, unless they are
+/// overridden.
+class DistanceSurface : public Surface {
+ public:
+  bool costlyDistance() const override { return true; }
+  bool project(Vec3f& p, float margin) const override { return projectAlongNormals(*this, p, margin); }
+  void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
+  void wireframe(const Bounds&, std::vector<LineSegment>&) const override {}
+};
+
 /// Names for the scene's "shape" key, in the order of makeSurface's index.
 std::span<const std::string_view> surfaceShapes();
 std::unique_ptr<Surface> makeSurface(int shape);
+/// Adds a shape from outside the library: from then on the surfaces of a scene may name it. Call it before
+/// the first scene is read. Throws std::invalid_argument for a name that is taken or no lower-case word.
+void registerSurface(const std::string& name, std::function<std::unique_ptr<Surface>()> make);
 
 // First hits of rays with one plane: what planes and the faces of boxes share.
 

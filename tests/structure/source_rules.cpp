@@ -33,6 +33,7 @@ constexpr Room kRooms[] = {
     {"core/simulation", 7},
     {"core/io", 8},
     {"core/study", 9},
+    {"include", 10},
     {"app/platform", 10},
     {"app/session", 10},
     {"app/render", 11},
@@ -43,6 +44,8 @@ constexpr Room kRooms[] = {
     {"app/command_line.cpp", 15},
     {"app/main.cpp", 16},
     {"cmake", 17},
+    {"python", 17},
+    {"examples", 17},
     {"tests", 17},
 };
 
@@ -94,12 +97,13 @@ const Library kLibraries[] = {
     {"GLFW/", {{"app/platform/", 1}}, "GLFW has one context file"},
     {"EGL/", {{"app/platform/", 1}}, "EGL has one context file"},
     {"imgui", {{"app/ui/"}, {"tests/render/"}}, "panels live in app/ui"},
+    {"pybind11/", {{"python/"}}, "Python is bound in a room of its own"},
     {"stb", {{"app/render/"}, {"tests/render/"}}, "pictures are read and written in the renderer"},
     {"random",
      {{"app/"}, {"tests/"}},
      "the standard's distributions differ between libraries; the physics has its own"},
     {"chrono",
-     {{"core/base/parallel.h"}, {"core/simulation/"}, {"app/"}, {"tests/"}},
+     {{"core/base/parallel.h"}, {"core/simulation/"}, {"app/"}, {"python/"}, {"tests/"}},
      "no clock in the physics"},
 };
 
@@ -257,7 +261,7 @@ Violations checkIncludeStyle(const std::vector<SourceFile>& files) {
   for (const SourceFile& file : files) known.insert(file.path);
   for (const SourceFile& file : files) {
     for (const Include& include : includesOf(file)) {
-      const bool ours = beginsWithOneOf(include.name, {"core/", "app/", "tests/"});
+      const bool ours = beginsWithOneOf(include.name, {"core/", "app/", "python/", "tests/"});
       if (include.quoted && !ours)
         violations.push_back(at(file, include.line) + ": \"" + include.name +
                              "\" is not named from the repository's root");

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 bool isText(const fs::path& path) {
   const std::string name = path.filename().string();
-  for (const char* ending : {".h", ".inl", ".cpp", ".cmake", ".txt", ".glsl", ".vert", ".frag"})
+  for (const char* ending :
+       {".h", ".inl", ".cpp", ".cmake", ".txt", ".glsl", ".vert", ".frag", ".py", ".pyi"})
     if (name.ends_with(ending)) return true;
   return false;
 }
@@ -23,7 +24,7 @@ bool isText(const fs::path& path) {
 std::vector<SourceFile> readTree() {
   const fs::path root = MIGIWA_SOURCE_DIR;
   std::vector<fs::path> paths{root / "run", root / "CMakeLists.txt", root / "packages.txt"};
-  for (const char* folder : {"core", "app", "tests", "cmake", "shaders"})
+  for (const char* folder : {"core", "app", "include", "python", "examples", "tests", "cmake", "shaders"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.is_regular_file() && isText(entry.path())) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());

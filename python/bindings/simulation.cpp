@@ -1,0 +1,74 @@
+#include "python/bindings/simulation.h"
+
+#include <cstdio>
+
+#include <pybind11/stl.h>
+
+namespace migiwa::python {
+
+namespace {
+
+std::string hashText(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+/// (kind, step, detail) of each.
+py::list troubleOf(const RunStatistics& statistics) {
+  py::list all;
+  for (const Trouble& trouble : statistics.trouble)
+    all.append(py::make_tuple(trouble.kind, trouble.step, trouble.detail));
+  return all;
+}
+
+template <FrameArray kWhich>
+py::array viewOf(HeldSimulation& simulation) {
+  return simulation.view(kWhich);
+}
+
+py::array_t<std::uint32_t> neighboursOf(const HeldSimulation& simulation) {
+  const auto counts = simulation.use().view().neighbours;
+  return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(counts.size()), counts.data());
+}
+
+}  // namespace
+
+void bindSimulation(py::module_& module) {
+  py::class_<HeldSimulation>(module, "Simulation", "A scene in motion.")
+      .def(py::init<const Scene&, int>(), py::arg("scene"), py::arg("threads") = 0)
+      .def("_step", &HeldSimulation::step)
+      .def("_run_until", &HeldSimulation::runUntil)
+      .def("_apply", &HeldSimulation::apply)
+      .def("_on_velocities", &HeldSimulation::addVelocityCallback)
+      .def("_report", &HeldSimulation::report)
+      .def("_save", &HeldSimulation::save)
+      .def("_resume", &HeldSimulation::resume)
+      .def("_write_particles", &HeldSimulation::writeParticles)
+      .def("_is_current", &HeldSimulation::current)
+      .def("_watch_pressure", [](HeldSimulation& held, bool on) { held.use().watchPressure(on); })
+      .def("_scene_copy", [](const HeldSimulation& held) { return Scene(held.use().scene()); })
+      .def("_capsule",
+           [](const HeldSimulation& held) { return py::capsule(&held.use(), "migiwa.Simulation"); })
+      .def("close", &HeldSimulation::close, "Ends it. Arrays that are still held keep their values.")
+      .def_property_readonly("closed", &HeldSimulation::closed)
+      .def_property_readonly("positions", viewOf<FrameArray::positions>)
+      .def_property_readonly("velocities", viewOf<FrameArray::velocities>)
+      .def_property_readonly("density", viewOf<FrameArray::density>)
+      .def_property_readonly("gamma", viewOf<FrameArray::gamma>)
+      .def_property_readonly("lambda_", viewOf<FrameArray::lambda>)
+      .def_property_readonly("pressure", viewOf<FrameArray::pressure>)
+      .def_property_readonly("ids", viewOf<FrameArray::ids>)
+      .def_property_readonly("neighbours", neighboursOf)
+      .def_property_readonly("time", [](const HeldSimulation& held) { return held.use().time(); })
+      .def_property_readonly("frame", [](const HeldSimulation& held) { return held.use().frame(); })
+      .def_property_readonly("threads", [](const HeldSimulation& held) { return held.use().threads(); })
+      .def_property_readonly("stopped", [](const HeldSimulation& held) { return held.use().stopped(); })
+      .def_property_readonly("state_hash",
+                             [](const HeldSimulation& held) { return hashText(held.use().stateHash()); })
+      .def_property_readonly("_trouble",
+                             [](const HeldSimulation& held) { return troubleOf(held.use().statistics()); })
+      .def("__len__", [](const HeldSimulation& held) { return held.use().view().positions.size(); });
+}
+
+}  // namespace migiwa::python
