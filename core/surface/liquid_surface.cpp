@@ -65,11 +65,24 @@ double varianceOf(KernelType kernel) {
   });
 }
 
+/// Along cells, and by their coordinates within each: the sums are then the same in whatever order particles come.
+std::vector<std::uint32_t> orderOf(const CellGrid& cells, std::span<const Float4> positions) {
+  std::vector<std::uint32_t> order = cells.order();
+  const auto key = [&](std::uint32_t i) { return std::array{positions[i].x, positions[i].y, positions[i].z}; };
+  for (std::size_t from = 0; from < order.size();) {
+    const CellGrid::Places cell = cells.places(cells.cellOf(positions[order[from]]));
+    std::sort(&order[from], &order[from] + (cell.to - cell.from),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    from = cell.to;
+  }
+  return order;
+}
+
 SortedParticles sorted(const LiquidParticles& particles, const LiquidWalls& walls, ThreadPool& pool) {
   SortedParticles result;
   result.supportRadius = particles.supportRadius, result.kernel = particles.kernel;
   result.cells.build(particles.positions, particles.supportRadius, pool);
-  const std::vector<std::uint32_t>& order = result.cells.order();
+  const std::vector<std::uint32_t> order = orderOf(result.cells, particles.positions);
   const double ratio = static_cast<double>(particles.supportRadius) / static_cast<double>(particles.spacing);
   const float weight = restingLattice(particles.kernel, ratio).massRatio;
   result.positions.resize(order.size());
