@@ -109,8 +109,6 @@ float Nodes::extended(int x, int y, int z) {
 
 namespace {
 
-/// Vertices stay this near to their cell, in cells.
-constexpr float kBeyond = 0.25F;
 /// Walls whose normals have a smaller product than this meet in an edge.
 constexpr float kSameWall = 0.95F;
 /// A wall whose normal has a larger product than this with the edge of two others ends it in a corner.
@@ -122,7 +120,7 @@ Vec3f placeOf(int corner) {
 }
 
 void clampToCell(Vec3f& p) {
-  p = p.cwiseMax(-kBeyond).cwiseMin(1 + kBeyond);
+  p = p.cwiseMax(0.0F).cwiseMin(1.0F);
 }
 
 /// A step of Newton's method for a value of zero, at most half a cell.
@@ -254,11 +252,9 @@ int CellSolver::toWalls(Vec3f& p, Vec3f& along) {
 
 /// Moves p onto the nearest wall, and returns the wall's normal.
 Vec3f CellSolver::ontoWall(Vec3f& p) const {
-  Vec3f normal;
-  for (int round = 0; round < 2; ++round) {
-    const float distance = grid_.boundary()->distance(low_ + grid_.cell() * p, normal);
-    p -= distance / grid_.cell() * normal;
-  }
+  Vec3f place = low_ + grid_.cell() * p;
+  const Vec3f normal = grid_.ontoWall(place);
+  p = (place - low_) / grid_.cell();
   return normal;
 }
 

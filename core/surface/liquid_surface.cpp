@@ -65,10 +65,13 @@ double varianceOf(KernelType kernel) {
   });
 }
 
-/// Along cells, and by their coordinates within each: the sums are then the same in whatever order particles come.
+/// Along cells, and by their coordinates within each: the sums are then the same in whatever order particles
+/// come.
 std::vector<std::uint32_t> orderOf(const CellGrid& cells, std::span<const Float4> positions) {
   std::vector<std::uint32_t> order = cells.order();
-  const auto key = [&](std::uint32_t i) { return std::array{positions[i].x, positions[i].y, positions[i].z}; };
+  const auto key = [&](std::uint32_t i) {
+    return std::array{positions[i].x, positions[i].y, positions[i].z};
+  };
   for (std::size_t from = 0; from < order.size();) {
     const CellGrid::Places cell = cells.places(cells.cellOf(positions[order[from]]));
     std::sort(&order[from], &order[from] + (cell.to - cell.from),

@@ -12,9 +12,9 @@ namespace {
 /// Share of the way to the mean of its neighbours that a vertex goes in a pass.
 constexpr float kShare = 0.5F;
 /// Passes over the displacement, so that no ripple is put back.
-constexpr int kDisplacementPasses = 4;
+constexpr int kDisplacementPasses = 6;
 /// Vertices stay this near to their cell, in cells.
-constexpr float kLeash = 0.5F;
+constexpr float kLeash = 0.25F;
 /// The most that is put back, in particle spacings: where the surface is curved more, it is a droplet's,
 /// whose size its particles' volume sets.
 constexpr float kMostBack = 0.3F;
@@ -78,7 +78,6 @@ class Smoother {
       : mesh_(mesh), grid_(grid), pool_(pool), neighbours_(mesh, pool), next_(mesh.positions.size()) {}
 
   void run(double kernelVariance, int passes) {
-    if (passes == 0) return;
     const std::vector<Vec3f> start = mesh_.positions;
     for (int pass = 0; pass < passes; ++pass) {
       forAll([&](std::size_t v) {
@@ -88,8 +87,9 @@ class Smoother {
       });
       mesh_.positions.swap(next_);
     }
-    putBack(start, static_cast<float>(kernelVariance), passes);
+    if (passes > 0) putBack(start, static_cast<float>(kernelVariance), passes);
     stayInLiquid();
+    untangle(mesh_, start, grid_, pool_);
   }
 
  private:
@@ -106,11 +106,7 @@ class Smoother {
     const Vec3f low = mesh_.cells[v] - Vec3f::Constant(kLeash * grid_.cell()),
                 high = mesh_.cells[v] + Vec3f::Constant((1 + kLeash) * grid_.cell());
     to = to.cwiseMax(low).cwiseMin(high);
-    if (mesh_.holds[v] == Hold::wall) {
-      Vec3f normal;
-      const float distance = grid_.boundary()->distance(to, normal);
-      to -= distance * normal;
-    }
+    if (mesh_.holds[v] != Hold::none) grid_.ontoWall(to);
     return to;
   }
 
