@@ -187,6 +187,23 @@ float Grid::valueAt(const Vec3f& p) const {
   return sum - kLevel;
 }
 
+Vec3f Grid::onLevel(Vec3f p) const {
+  constexpr int kRounds = 3;
+  const float aside = 0.05F * cell();
+  for (int round = 0; round < kRounds; ++round) {
+    const float value = valueAt(p);
+    Vec3f gradient;
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] = (valueAt(p + aside * Vec3f::Unit(axis)) - value) / aside;
+    const float squared = gradient.squaredNorm();
+    if (squared * cell() * cell() < 1e-4F) break;
+    Vec3f move = -value / squared * gradient;
+    if (const float length = move.norm(); length > 0.5F * cell()) move *= 0.5F * cell() / length;
+    p += move;
+  }
+  return p;
+}
+
 Vec3f Grid::ontoWall(Vec3f& p) const {
   constexpr int kRounds = 4, kHalvings = 20;
   const float close = 1e-5F * cell();

@@ -53,6 +53,9 @@ class Grid {
 
   /// c at any point of the fluid's side, less the level.
   float valueAt(const Vec3f& p) const;
+  /// The point near p (m) where c is at the level, by c itself instead of between nodes: for drops of a few
+  /// cells.
+  Vec3f onLevel(Vec3f p) const;
   /// Moves p (m) onto the nearest wall, and returns the wall's normal there.
   Vec3f ontoWall(Vec3f& p) const;
   Vec3d place(const Block& block, int x, int y, int z) const;

@@ -15,8 +15,8 @@ constexpr float kShare = 0.5F;
 constexpr int kDisplacementPasses = 6;
 /// Vertices stay this near to their cell, in cells.
 constexpr float kLeash = 0.25F;
-/// The most that is put back, in particle spacings: where the surface is curved more, it is a droplet's,
-/// whose size its particles' volume sets.
+/// Where more would have to be put back, in particle spacings, the surface is that of a droplet or a thread:
+/// from there to twice as much the vertex goes back to the level of c.
 constexpr float kMostBack = 0.3F;
 
 /// The vertices that pull at each vertex: all around it on the free surface, those along the contact line on
@@ -115,13 +115,22 @@ class Smoother {
   /// is known, and so is both.
   void putBack(const std::vector<Vec3f>& start, float kernelVariance, int passes) {
     std::vector<Vec3f> moved(start.size());
-    forAll([&](std::size_t v) { moved[v] = mesh_.positions[v] - start[v]; });
+    std::vector<float> lengths(start.size()), nextLengths(start.size());
+    forAll([&](std::size_t v) {
+      moved[v] = mesh_.positions[v] - start[v];
+      lengths[v] = moved[v].norm();
+    });
     for (int pass = 0; pass < kDisplacementPasses; ++pass) {
       forAll([&](std::size_t v) {
         const auto around = neighbours_.of(v);
         next_[v] = around.empty() ? moved[v] : Vec3f(0.5F * (moved[v] + meanOf(around, moved)));
+        float sum = 0;
+        for (const std::uint32_t n : around) sum += lengths[n];
+        nextLengths[v] =
+            around.empty() ? lengths[v] : 0.5F * (lengths[v] + sum / static_cast<float>(around.size()));
       });
       moved.swap(next_);
+      lengths.swap(nextLengths);
     }
     const float most = kMostBack * grid_.spacing();
     forAll([&](std::size_t v) {
@@ -133,9 +142,14 @@ class Smoother {
       for (const std::uint32_t n : around) squares += (start[n] - start[v]).squaredNorm();
       squares /= static_cast<float>(around.size());
       const float passed = kShare * static_cast<float>(passes) * squares / 4;
-      Vec3f back = -(1 + kernelVariance / 2 / std::max(passed, 1e-12F)) * moved[v];
-      if (const float length = back.norm(); length > most) back *= most / length;
-      next_[v] = held(v, p, p + back);
+      const float share = 1 + kernelVariance / 2 / std::max(passed, 1e-12F);
+      const float smooth = std::clamp(2 - share * lengths[v] / most, 0.0F, 1.0F);
+      next_[v] = p - share * moved[v];
+      if (smooth < 1) {
+        const Vec3f own = mesh_.holds[v] == Hold::none ? grid_.onLevel(start[v]) : start[v];
+        next_[v] = own + smooth * (next_[v] - own);
+      }
+      next_[v] = held(v, p, next_[v]);
     });
     mesh_.positions.swap(next_);
   }
