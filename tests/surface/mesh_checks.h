@@ -58,8 +58,8 @@ inline MeshFaults faultsOf(const SurfaceMesh& mesh) {
   return faults;
 }
 
-/// How far (m) the segment from p to q pierces the inside of the triangle: the least of the distances of p and q from
-/// its plane and of the point of passage from its edges; 0 where it does not.
+/// How far (m) the segment from p to q pierces the inside of the triangle: the least of the distances of p
+/// and q from its plane and of the point of passage from its edges; 0 where it does not.
 inline double pierced(const Vec3d& p, const Vec3d& q, const std::array<Vec3d, 3>& t) {
   const Vec3d area = (t[1] - t[0]).cross(t[2] - t[0]);
   const double size = area.norm();
@@ -76,8 +76,8 @@ inline double pierced(const Vec3d& p, const Vec3d& q, const std::array<Vec3d, 3>
   return std::max(depth, 0.0);
 }
 
-/// Pairs of triangles without a common vertex that pass through each other by more than `tolerance` (m). `cell` (m) is
-/// about as long as the longest edges.
+/// Pairs of triangles without a common vertex that pass through each other by more than `tolerance` (m).
+/// `cell` (m) is about as long as the longest edges.
 inline long crossingsOf(const SurfaceMesh& mesh, double cell, double tolerance) {
   using Key = std::array<int, 3>;
   std::map<Key, std::vector<std::uint32_t>> cells;
@@ -105,7 +105,8 @@ inline long crossingsOf(const SurfaceMesh& mesh, double cell, double tolerance) 
         const auto& vb = mesh.triangles[b];
         if (a == b || std::find_first_of(va.begin(), va.end(), vb.begin(), vb.end()) != va.end()) continue;
         for (std::size_t k = 0; k < 3; ++k)
-          if (pierced(corner(b, k), corner(b, (k + 1) % 3), ta) > tolerance) crossing.insert(std::minmax(a, b));
+          if (pierced(corner(b, k), corner(b, (k + 1) % 3), ta) > tolerance)
+            crossing.insert(std::minmax(a, b));
       }
     }
   }
