@@ -1,6 +1,5 @@
 // From labelled nodes to a closed mesh, by duality: a vertex in every cell for each sheet of the surface
-// through it, a face around every edge of the grid that leaves the water (surface nets after Gibson 1998,
-// with the sheets of [Nie]).
+// through it, a face around every edge of the grid that leaves the water ([Gib], with the sheets of [Nie]).
 #include <algorithm>
 #include <array>
 #include <memory>

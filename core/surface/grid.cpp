@@ -205,7 +205,7 @@ Vec3f Grid::onLevel(Vec3f p) const {
 }
 
 Vec3f Grid::ontoWall(Vec3f& p) const {
-  constexpr int kRounds = 4, kHalvings = 20;
+  constexpr int kRounds = 12, kHalvings = 20;
   const float close = 1e-5F * cell();
   Vec3f normal;
   float distance = walls_.boundary->distance(p, normal);

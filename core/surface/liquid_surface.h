@@ -15,7 +15,8 @@
 
 namespace migiwa {
 
-/// Particles of one moment; those at no finite place are left out. `velocities` may be empty: the mesh then has velocities of zero.
+/// Particles of one moment; those at no finite place are left out. `velocities` may be empty: the mesh then
+/// has velocities of zero.
 struct LiquidParticles {
   std::span<const Float4> positions;   ///< (m)
   std::span<const Float4> velocities;  ///< (m/s)
