@@ -131,18 +131,23 @@ class ParticleTaker {
   ParticleTaker(const ImportText& text, const Vec3d& origin) : text_(text), origin_(origin) {}
 
   void position(const std::array<double, 3>& place) {
-    const Vec3d p = Vec3d(place[0], place[1], place[2]) - origin_;
-    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > static_cast<double>(std::numeric_limits<float>::max()))
-      text_.fail("expected finite coordinates, found others for particle " +
-                 std::to_string(result.positions.size()) + ", counted from 0");
-    result.positions.emplace_back(p.cast<float>());
+    result.positions.push_back(
+        finite(Vec3d(place[0], place[1], place[2]) - origin_, "coordinates", result.positions.size()));
   }
   void velocity(const std::array<double, 3>& u) {
-    result.velocities.emplace_back(Vec3d(u[0], u[1], u[2]).cast<float>());
+    result.velocities.push_back(finite(Vec3d(u[0], u[1], u[2]), "velocities", result.velocities.size()));
   }
   ImportedParticles result;
 
  private:
+  Float4 finite(const Vec3d& value, const std::string& what, std::size_t particle) const {
+    if (!value.allFinite() ||
+        value.cwiseAbs().maxCoeff() > static_cast<double>(std::numeric_limits<float>::max()))
+      text_.fail("expected finite " + what + ", found others for particle " + std::to_string(particle) +
+                 ", counted from 0");
+    return Float4(value.cast<float>());
+  }
+
   const ImportText& text_;
   Vec3d origin_;
 };
