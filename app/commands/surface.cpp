@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -32,6 +33,7 @@ struct SurfaceJob {
   std::optional<double> resolution;    ///< (spacings)
   std::optional<int> smoothing;
   std::optional<double> dropBelow;  ///< (particles)
+  bool forBlender = false;
 };
 
 /// What was asked for, looked at before anything is simulated or written.
@@ -68,6 +70,8 @@ class SurfaceCommand {
     number(collect, "--resolution", job.resolution, Range::closed(0.1, 2), "spacings");
     number(collect, "--drop-below", job.dropBelow, Range::closed(0, 1e9), "particles");
     findFormat(collect);
+    if (job.forBlender && format_ != nullptr && format_->name != "ply")
+      collect.add({"--for-blender", "expected --format ply with it, found " + job.format});
     collect([&] { makeFolder(job.out, "--out"); });
     collect.raise();
     options_.resolution = job.resolution.value_or(options_.resolution);
@@ -165,6 +169,7 @@ class SurfaceCommand {
   void write(const std::string& stem, const SurfaceMesh& mesh, double time, std::size_t particles) {
     const std::string name = stem + "." + std::string(format_->name);
     writeTextFile(std::filesystem::path(job_.out) / name, format_->text({mesh, time, scene_->origin}));
+    for (const Vec3f& p : mesh.positions) bounds_.include(p.cast<double>());
     entries_.push_back({{"file", name},
                         {"time", time},
                         {"particles", particles},
@@ -183,8 +188,28 @@ class SurfaceCommand {
     list["files"] = entries_;
     const std::string name = stem + "_surface." + std::string(format_->name) + ".json";
     writeTextFile(std::filesystem::path(job_.out) / name, list.dump(2) + "\n");
+    if (job_.forBlender) {
+      const std::string script = stem + "_surface_blender.py";
+      writeTextFile(std::filesystem::path(job_.out) / script, blenderScript(viewFor(name)));
+      std::cout << "blender -b -P " << (std::filesystem::path(job_.out) / script).string()
+                << " renders them\n";
+    }
     std::cout << entries_.size() << (entries_.size() == 1 ? " mesh" : " meshes") << " written to " << job_.out
               << ", listed in " << name << '\n';
+  }
+
+  BlenderView viewFor(const std::string& list) const {
+    const Bounds bounds = bounds_.empty() ? Bounds{Vec3d::Zero(), Vec3d::Ones()} : bounds_;
+    const Camera camera = scene_->file.empty() ? defaultCamera(bounds, scene_->gravity) : scene_->view.camera;
+    const double size = bounds.size().norm();
+    // A little below what touches the floor, or both would be in one place.
+    const Vec3d ground(bounds.center().x(), bounds.min.y() - 0.003 * size, bounds.center().z());
+    return {list,
+            camera.eye + scene_->origin,
+            camera.target + scene_->origin,
+            ground + scene_->origin,
+            camera.fovDegrees * std::numbers::pi / 180,
+            size};
   }
 
   const SurfaceJob& job_;
@@ -193,6 +218,7 @@ class SurfaceCommand {
   const SurfaceFormat* format_ = nullptr;
   SurfaceOptions options_;
   std::vector<nlohmann::ordered_json> entries_;
+  Bounds bounds_;  ///< of all meshes
 };
 
 std::vector<Option> surfaceOptions(SurfaceJob& job) {
@@ -238,6 +264,9 @@ std::vector<Option> surfaceOptions(SurfaceJob& job) {
        .target = &job.dropBelow,
        .value = "N",
        .help = "Leaves out pieces with less volume than so many particles; left out: every droplet is kept."},
+      {.name = "--for-blender",
+       .target = &job.forBlender,
+       .help = "Writes a script as well with which `blender -b -P` renders the meshes."},
       {.name = "--particles",
        .target = &job.particles,
        .value = "FILE...",

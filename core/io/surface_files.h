@@ -30,6 +30,17 @@ struct SurfaceFormat {
 /// The first is the one that is written unless another is asked for.
 std::span<const SurfaceFormat> surfaceFormats();
 
+/// What a script that renders meshes has to know. Places as in the meshes' files (m).
+struct BlenderView {
+  std::string list;           ///< name of the file that lists the meshes, beside the script
+  Vec3d eye, target, ground;  ///< the camera's places, and a point of the ground
+  double fov = 0.7;           ///< vertical field of view (rad)
+  double size = 1;            ///< of what is seen (m)
+};
+
+/// A Python script for `blender -b -P`: water that refracts and absorbs, on a ground, under a sky and a sun.
+std::string blenderScript(const BlenderView& view);
+
 // Particles from files: those that `simulate --export` writes as PLY and VTK, and others that hold as much.
 
 struct ImportedParticles {

@@ -181,6 +181,10 @@ TEST_P(EveryScene, HasAClosedSurface) {
     if (!run.runTo(end * k / 4)) break;
     const SurfaceMesh mesh = run.mesh();
     const std::string what = GetParam() + " at " + std::to_string(run.simulation().time());
+    EXPECT_EQ(faultsOf(mesh).total(), 0) << what;
+    // These walls are broken on purpose: their distances jump, so that no point of them is at a distance of
+    // zero.
+    if (GetParam() == "hard/slim_shell_crossing" || GetParam() == "hard/slim_shell_holed") continue;
     expectSound(mesh, run, what);
     EXPECT_LE(crossingsOf(mesh, run.spacing(), 0.02 * run.spacing()),
               static_cast<long>(mesh.triangles.size() / 2000))

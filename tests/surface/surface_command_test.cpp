@@ -78,6 +78,26 @@ TEST_F(SurfaceCommand, NamesAllThatIsWrongAndWritesNothing) {
   EXPECT_TRUE(!fs::exists(folder_ / "mesh") || fs::is_empty(folder_ / "mesh"));
 }
 
+TEST_F(SurfaceCommand, WritesAScriptWithWhichBlenderRendersTheSequence) {
+  ASSERT_EQ(
+      run({"surface", "drop.json", "--every", "0.1", "--out", "mesh", "--for-blender", "--resolution", "1"})
+          .code,
+      0);
+  const fs::path script = folder_ / "mesh/drop_surface_blender.py";
+  ASSERT_TRUE(fs::exists(script));
+  EXPECT_EQ(readAll(script).find('@'), std::string::npos);
+  EXPECT_EQ(
+      run({"surface", "drop.json", "--every", "1", "--out", "obj", "--for-blender", "--format", "obj"}).code,
+      2);
+  if (std::system("blender --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "Blender is not installed here";
+  const std::string log = shellQuoted((base_ / "blender").string());
+  const std::string command =
+      "blender -b -P " + shellQuoted(script.string()) + " -- --samples 1 --size 64x36 >" + log + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << readAll(base_ / "blender");
+  for (const char* name : {"drop_surface_000000.png", "drop_surface_000001.png"})
+    EXPECT_GT(readAll(folder_ / "mesh" / name).size(), 200u) << readAll(base_ / "blender");
+}
+
 TEST_F(SurfaceCommand, ADiskThatFillsLeavesNothingHalfWritten) {
   // Files of at most 8 KiB stand for it.
   const Outcome outcome =
