@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "core/base/math.h"
 #include "core/surface/grid.h"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Geometry>
+
 #include "core/surface/grid.h"
 
 namespace migiwa::surface {

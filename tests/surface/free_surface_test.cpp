@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/messages.h"
 #include "core/surface/liquid_surface.h"
 #include "tests/surface/mesh_checks.h"
 
@@ -192,22 +191,6 @@ TEST(FreeSurface, GoesWithTheParticlesVelocities) {
     EXPECT_NEAR(mesh.velocities[v].x(), 1 + 2 * p.x(), 2 * near);
     EXPECT_NEAR(mesh.velocities[v].y(), -1, 1e-5);
     EXPECT_NEAR(mesh.velocities[v].z(), 3 * p.y(), 3 * near);
-  }
-}
-
-TEST(FreeSurface, HasNoRoomForEveryResolution) {
-  // A particle in every block of a kilometre: the grid has no room, and says which option made it so.
-  std::vector<Float4> positions;
-  for (int k = 0; k < 20000; ++k)
-    positions.emplace_back(static_cast<float>(k % 100) * 10, static_cast<float>(k / 100) * 10, 0.0F);
-  ThreadPool pool(2);
-  SurfaceOptions options;
-  options.resolution = 0.1, options.place = "--resolution";
-  try {
-    liquidSurface({positions, {}, 5.0F, 50.0F}, {}, options, pool);
-    GTEST_SKIP() << "this machine has the memory";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("--resolution"), std::string::npos) << error.what();
   }
 }
 

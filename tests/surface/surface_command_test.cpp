@@ -98,6 +98,21 @@ TEST_F(SurfaceCommand, WritesAScriptWithWhichBlenderRendersTheSequence) {
     EXPECT_GT(readAll(folder_ / "mesh" / name).size(), 200u) << readAll(base_ / "blender");
 }
 
+TEST_F(SurfaceCommand, AResolutionWithoutRoomIsNamed) {
+  // Drops far from each other, each with hundreds of blocks of the grid: gigabytes, where there are two.
+  std::ofstream file(folder_ / "drops.ply");
+  file << "ply\nformat ascii 1.0\nelement vertex 2000\nproperty float x\nproperty float y\nproperty float "
+          "z\nend_header\n";
+  for (int k = 0; k < 2000; ++k) file << k % 50 << ' ' << k / 50 << " 0\n";
+  file.close();
+  const Outcome outcome = run(
+      {"surface", "--particles", "drops.ply", "--spacing", "0.05", "--out", "mesh", "--resolution", "0.1"},
+      "ulimit -v 2000000");
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("--resolution: "), std::string::npos) << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder_ / "mesh"));
+}
+
 TEST_F(SurfaceCommand, ADiskThatFillsLeavesNothingHalfWritten) {
   // Files of at most 8 KiB stand for it.
   const Outcome outcome =
