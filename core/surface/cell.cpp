@@ -74,7 +74,8 @@ void Nodes::load(const Grid& grid, const Block& block) {
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) {
         const int bx = x / Block::kSide, by = y / Block::kSide, bz = z / Block::kSide;
-        const std::int32_t owner = block.around[static_cast<std::size_t>(13 + bx + 3 * by + 9 * bz)];
+        const int beside = 13 + bx + 3 * by + 9 * bz;
+        const std::int32_t owner = block.around[static_cast<std::size_t>(beside)];
         const std::size_t n = index(x, y, z);
         if (owner < 0) {
           label[n] = Label::air, value[n] = -1, distance[n] = std::numeric_limits<float>::infinity();
@@ -256,7 +257,7 @@ int CellSolver::toWalls(Vec3f& p, Vec3f& along) {
 /// Moves p onto the nearest wall, and returns the wall's normal.
 Vec3f CellSolver::ontoWall(Vec3f& p) const {
   Vec3f place = low_ + grid_.cell() * p;
-  const Vec3f normal = grid_.ontoWall(place);
+  Vec3f normal = grid_.ontoWall(place);
   p = (place - low_) / grid_.cell();
   return normal;
 }

@@ -64,7 +64,8 @@ class Nodes {
  public:
   static constexpr int kSide = Block::kSide + 1, kCount = kSide * kSide * kSide;
   static constexpr std::size_t index(int x, int y, int z) {
-    return static_cast<std::size_t>((z * kSide + y) * kSide + x);
+    const int node = (z * kSide + y) * kSide + x;
+    return static_cast<std::size_t>(node);
   }
 
   void load(const Grid& grid, const Block& block);

@@ -118,9 +118,8 @@ class Contour {
   static bool joinsTwice(int lower, int upper, int axis) {
     const Face face = faceOf(axis, 1);
     if (!ambiguous(lower, face)) return false;
-    const int first = inside(lower, face.corners[0]) ? 0 : 1;
-    const int p = face.corners[static_cast<std::size_t>(first)],
-              q = face.corners[static_cast<std::size_t>(first + 2)];
+    const std::size_t first = inside(lower, face.corners[0]) ? 0 : 1;
+    const int p = face.corners[first], q = face.corners[first + 2];
     const int across = (axis + 1) % 3, below = ~(1 << axis);
     return sheetOf(lower, edgeAt(across, p)) == sheetOf(lower, edgeAt(across, q)) &&
            sheetOf(upper, edgeAt(across, p & below)) == sheetOf(upper, edgeAt(across, q & below));
