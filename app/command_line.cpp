@@ -241,8 +241,9 @@ int runCommandLine(std::vector<std::string> arguments) {
 }
 
 std::vector<Command> allCommands() {
-  return {viewCommand(),    renderCommand(), simulateCommand(), checkCommand(),  gammaCommand(),
-          summaryCommand(), slimCommand(),   studyCommand(),    schemaCommand(), truthCommand()};
+  return {viewCommand(),   renderCommand(),  simulateCommand(), checkCommand(),
+          gammaCommand(),  summaryCommand(), slimCommand(),     studyCommand(),
+          schemaCommand(), truthCommand(),   surfaceCommand()};
 }
 
 }  // namespace migiwa

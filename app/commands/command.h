@@ -78,6 +78,7 @@ Command slimCommand();
 Command studyCommand();
 Command schemaCommand();
 Command truthCommand();
+Command surfaceCommand();
 
 /// What is shipped under that name: in the current folder, or in the repository that the program was built
 /// in. Throws InputError at `option` where it is in neither; `what` such as "a scene file".

@@ -15,6 +15,7 @@
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/simulation/run_state.h"
+#include "core/simulation/scene_surface.h"
 #include "core/simulation/state.h"
 #include "core/solver/parameters.h"
 #include "core/walls/gridded.h"
@@ -308,6 +309,30 @@ void requireSteppable(const BoundaryParameters& boundary, const std::filesystem:
                    "expected a method that is quick enough for every step, such as \"auto\", found \"" +
                        std::string(gammaMethodNames()[method]) +
                        "\", a reference for migiwa gamma alone; --set /boundary/gamma/method=auto helps");
+}
+
+SceneSurface::SceneSurface(const Scene& scene, SurfaceOptions options, ThreadPool& pool)
+    : options_(std::move(options)),
+      pool_(pool),
+      spacing_(static_cast<float>(scene.particleSpacing)),
+      support_(static_cast<float>(scene.supportRadius())),
+      kernel_(scene.solver.kernel),
+      boundary_(wallsOf(scene, pool)) {
+  if (boundary_.empty()) return;
+  gamma_ =
+      makeGammaMethod(scene.boundary.gammaMethod,
+                      {boundary_, kernel_, support_, scene.boundary.directions, scene.boundary.samples,
+                       scene.bounds(), &pool, scene.file.string() + ":/boundary/gamma/method", spacing_});
+}
+
+SurfaceMesh SceneSurface::mesh(std::span<const Float4> positions, std::span<const Float4> velocities,
+                               double time, StageTimes* times) {
+  if (boundary_.moves()) {
+    boundary_.moveTo(time, time);
+    gamma_.method->wallsMoved();
+  }
+  return liquidSurface({positions, velocities, spacing_, support_, kernel_},
+                       {&boundary_, gamma_.method.get()}, options_, pool_, times);
 }
 
 }  // namespace migiwa

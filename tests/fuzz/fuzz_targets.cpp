@@ -14,6 +14,7 @@
 #include "core/base/messages.h"
 #include "core/io/points_csv.h"
 #include "core/io/save_file.h"
+#include "core/io/surface_files.h"
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
 #include "core/slim/file.h"
@@ -91,6 +92,10 @@ void points(std::string_view input) {
   refusedOrRead([&] { readPoints(fileWith(input, ".csv")); });
 }
 
+void particles(std::string_view input) {
+  refusedOrRead([&] { readParticles(fileWith(input, ".particles")); });
+}
+
 /// Lengths and checksum of a save are made to fit, or hardly any input would get past them.
 std::string withChecksum(std::string_view input) {
   constexpr std::size_t kHead = 40, kHeaderBytes = 16, kArrayBytes = 24, kChecksum = 32;
@@ -122,12 +127,13 @@ void save(std::string_view input) {
   });
 }
 
-constexpr std::array<Target, 7> kTargets{{{"scene", scene},
+constexpr std::array<Target, 8> kTargets{{{"scene", scene},
                                           {"set", set},
                                           {"slim", slim},
                                           {"obj", obj},
                                           {"mesh", mesh},
                                           {"points", points},
+                                          {"particles", particles},
                                           {"save", save}}};
 
 }  // namespace

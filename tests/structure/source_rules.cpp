@@ -27,6 +27,7 @@ constexpr Room kRooms[] = {
     {"core/slim", 1},
     {"core/walls", 2},
     {"core/gamma", 3},
+    {"core/surface", 4},
     {"core/solver", 4},
     {"core/effects", 5},
     {"core/scene", 6},
