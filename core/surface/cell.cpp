@@ -109,8 +109,6 @@ float Nodes::extended(int x, int y, int z) {
 
 namespace {
 
-/// Vertices stay this near to their cell, in cells.
-constexpr float kBeyond = 0.25F;
 /// Walls whose normals have a smaller product than this meet in an edge.
 constexpr float kSameWall = 0.95F;
 /// A wall whose normal has a larger product than this with the edge of two others ends it in a corner.
@@ -122,7 +120,7 @@ Vec3f placeOf(int corner) {
 }
 
 void clampToCell(Vec3f& p) {
-  p = p.cwiseMax(-kBeyond).cwiseMin(1 + kBeyond);
+  p = p.cwiseMax(0.0F).cwiseMin(1.0F);
 }
 
 /// A step of Newton's method for a value of zero, at most half a cell.
@@ -239,26 +237,27 @@ int CellSolver::toWalls(Vec3f& p, Vec3f& along) {
   int walls = 2;
   for (const Plane& plane : planes_)
     if (std::abs(plane.normal.dot(along)) > kAcross) walls = 3;
-  // The point nearest to all planes, and of those the one nearest to p.
+  // The point nearest to all planes, and of those the one nearest to p: each round leaves a hundredth of the
+  // way.
   constexpr float kPull = 0.01F;
+  constexpr int kRounds = 3;
   Eigen::Matrix3f matrix = kPull * Eigen::Matrix3f::Identity();
-  Vec3f right = Vec3f::Zero();
-  for (const Plane& plane : planes_) {
-    matrix += plane.normal * plane.normal.transpose();
-    right += (plane.offset - plane.normal.dot(p)) * plane.normal;
+  for (const Plane& plane : planes_) matrix += plane.normal * plane.normal.transpose();
+  const Eigen::LDLT<Eigen::Matrix3f> solver(matrix);
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3f right = Vec3f::Zero();
+    for (const Plane& plane : planes_) right += (plane.offset - plane.normal.dot(p)) * plane.normal;
+    p += solver.solve(right);
   }
-  p += matrix.ldlt().solve(right);
   clampToCell(p);
   return walls;
 }
 
 /// Moves p onto the nearest wall, and returns the wall's normal.
 Vec3f CellSolver::ontoWall(Vec3f& p) const {
-  Vec3f normal;
-  for (int round = 0; round < 2; ++round) {
-    const float distance = grid_.boundary()->distance(low_ + grid_.cell() * p, normal);
-    p -= distance / grid_.cell() * normal;
-  }
+  Vec3f place = low_ + grid_.cell() * p;
+  const Vec3f normal = grid_.ontoWall(place);
+  p = (place - low_) / grid_.cell();
   return normal;
 }
 

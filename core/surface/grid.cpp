@@ -187,29 +187,43 @@ float Grid::valueAt(const Vec3f& p) const {
   return sum - kLevel;
 }
 
-float Grid::interpolated(const Vec3f& p) const {
-  const Vec3d scaled = p.cast<double>() / cell_ - Vec3d::Constant(0.5);
-  const Vec3d low(std::floor(scaled.x()), std::floor(scaled.y()), std::floor(scaled.z()));
-  const Vec3f part = (scaled - low).cast<float>();
-  float sum = 0;
-  std::int32_t held = -1;
-  for (int corner = 0; corner < 8; ++corner) {
-    Index3 block, inner;
-    float weight = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const int bit = corner >> axis & 1, node = static_cast<int>(low[axis]) + bit;
-      block[a] = node >= 0 ? node / Block::kSide : -((Block::kSide - 1 - node) / Block::kSide);
-      inner[a] = node - block[a] * Block::kSide;
-      weight *= bit != 0 ? part[axis] : 1 - part[axis];
-    }
-    if (held < 0 || blocks_[static_cast<std::size_t>(held)].at != block) held = find(block);
-    sum += weight * (held < 0
-                         ? -kLevel
-                         : blocks_[static_cast<std::size_t>(held)]
-                               .value[static_cast<std::size_t>(Block::index(inner[0], inner[1], inner[2]))]);
+Vec3f Grid::onLevel(Vec3f p) const {
+  constexpr int kRounds = 3;
+  const float aside = 0.05F * cell();
+  for (int round = 0; round < kRounds; ++round) {
+    const float value = valueAt(p);
+    Vec3f gradient;
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] = (valueAt(p + aside * Vec3f::Unit(axis)) - value) / aside;
+    const float squared = gradient.squaredNorm();
+    if (squared * cell() * cell() < 1e-4F) break;
+    Vec3f move = -value / squared * gradient;
+    if (const float length = move.norm(); length > 0.5F * cell()) move *= 0.5F * cell() / length;
+    p += move;
   }
-  return sum;
+  return p;
+}
+
+Vec3f Grid::ontoWall(Vec3f& p) const {
+  constexpr int kRounds = 4, kHalvings = 20;
+  const float close = 1e-5F * cell();
+  Vec3f normal;
+  float distance = walls_.boundary->distance(p, normal);
+  for (int round = 0; round < kRounds && std::abs(distance) > close; ++round) {
+    p -= distance * normal;
+    distance = walls_.boundary->distance(p, normal);
+  }
+  if (std::abs(distance) <= close) return normal;
+  // Near rims a distance from a grid leads past the wall to and fro: then between two points on either side.
+  Vec3f one = p, other = p - 2 * distance * normal;
+  if ((walls_.boundary->distance(other) > 0) == (distance > 0)) return normal;
+  for (int halving = 0; halving < kHalvings && std::abs(distance) > close; ++halving) {
+    p = 0.5F * (one + other);
+    const float middle = walls_.boundary->distance(p, normal);
+    ((middle > 0) == (distance > 0) ? one : other) = p;
+    if (std::abs(middle) <= close) break;
+  }
+  return normal;
 }
 
 }  // namespace migiwa::surface

@@ -53,8 +53,11 @@ class Grid {
 
   /// c at any point of the fluid's side, less the level.
   float valueAt(const Vec3f& p) const;
-  /// The same between the nodes: trilinear, and that of air where there are none.
-  float interpolated(const Vec3f& p) const;
+  /// The point near p (m) where c is at the level, by c itself instead of between nodes: for drops of a few
+  /// cells.
+  Vec3f onLevel(Vec3f p) const;
+  /// Moves p (m) onto the nearest wall, and returns the wall's normal there.
+  Vec3f ontoWall(Vec3f& p) const;
   Vec3d place(const Block& block, int x, int y, int z) const;
 
   std::span<const Block> blocks() const { return blocks_; }
@@ -101,6 +104,10 @@ struct RawMesh {
 };
 
 RawMesh contour(const Grid& grid, ThreadPool& pool);
+
+/// Moves vertices of triangles that pass through each other back to where the contour had them, and on to the
+/// middle of their cells, until none do.
+void untangle(RawMesh& mesh, const std::vector<Vec3f>& found, const Grid& grid, ThreadPool& pool);
 
 /// Moves the vertices; see docs/surface.md.
 void smooth(RawMesh& mesh, const Grid& grid, double kernelVariance, int passes, ThreadPool& pool);

@@ -65,10 +65,13 @@ double varianceOf(KernelType kernel) {
   });
 }
 
-/// Along cells, and by their coordinates within each: the sums are then the same in whatever order particles come.
+/// Along cells, and by their coordinates within each: the sums are then the same in whatever order particles
+/// come.
 std::vector<std::uint32_t> orderOf(const CellGrid& cells, std::span<const Float4> positions) {
   std::vector<std::uint32_t> order = cells.order();
-  const auto key = [&](std::uint32_t i) { return std::array{positions[i].x, positions[i].y, positions[i].z}; };
+  const auto key = [&](std::uint32_t i) {
+    return std::array{positions[i].x, positions[i].y, positions[i].z};
+  };
   for (std::size_t from = 0; from < order.size();) {
     const CellGrid::Places cell = cells.places(cells.cellOf(positions[order[from]]));
     std::sort(&order[from], &order[from] + (cell.to - cell.from),
@@ -202,6 +205,18 @@ SurfaceMesh liquidSurface(const LiquidParticles& particles, const LiquidWalls& w
   StageTimes ignored;
   StageTimes& stages = times != nullptr ? *times : ignored;
   SurfaceMesh mesh;
+  const auto finite = [](const Float4& p) { return p.xyz().allFinite(); };
+  if (!std::all_of(particles.positions.begin(), particles.positions.end(), finite)) {
+    std::vector<Float4> positions, velocities;
+    for (std::size_t k = 0; k < particles.positions.size(); ++k) {
+      if (!finite(particles.positions[k])) continue;
+      positions.push_back(particles.positions[k]);
+      if (!particles.velocities.empty()) velocities.push_back(particles.velocities[k]);
+    }
+    return liquidSurface(
+        {positions, velocities, particles.spacing, particles.supportRadius, particles.kernel}, walls, options,
+        pool, times);
+  }
   if (particles.positions.empty()) return mesh;
   LiquidWalls kept = walls;
   if (kept.boundary != nullptr && kept.boundary->empty()) kept = {};

@@ -15,7 +15,7 @@
 
 namespace migiwa {
 
-/// Particles of one moment. `velocities` may be empty: the mesh then has velocities of zero.
+/// Particles of one moment; those at no finite place are left out. `velocities` may be empty: the mesh then has velocities of zero.
 struct LiquidParticles {
   std::span<const Float4> positions;   ///< (m)
   std::span<const Float4> velocities;  ///< (m/s)
@@ -33,7 +33,7 @@ struct LiquidWalls {
 
 struct SurfaceOptions {
   double resolution = 0.5;          ///< cells of the grid over the particle spacing (range: [0.1, 2])
-  int smoothing = 6;                ///< passes over the free surface (range: [0, 100])
+  int smoothing = 10;               ///< passes over the free surface (range: [0, 100])
   double smallest = 0;              ///< pieces of less than so many particles' volume are left out; 0: none
   std::string place{"resolution"};  ///< of the resolution, for errors
 };

@@ -12,12 +12,15 @@ namespace {
 /// Share of the way to the mean of its neighbours that a vertex goes in a pass.
 constexpr float kShare = 0.5F;
 /// Passes over the displacement, so that no ripple is put back.
-constexpr int kDisplacementPasses = 4;
+constexpr int kDisplacementPasses = 6;
 /// Vertices stay this near to their cell, in cells.
-constexpr float kLeash = 0.5F;
-/// The most that is put back, in particle spacings: where the surface is curved more, it is a droplet's,
-/// whose size its particles' volume sets.
+constexpr float kLeash = 0.25F;
+/// Where more would have to be put back, in particle spacings, the surface is that of a droplet or a thread:
+/// from there to twice as much the vertex goes back to the level of c.
 constexpr float kMostBack = 0.3F;
+
+/// Edges are taken as at least so long, squared, in cells.
+constexpr float kLeastEdge = 0.1F;
 
 /// The vertices that pull at each vertex: all around it on the free surface, those along the contact line on
 /// it.
@@ -78,7 +81,6 @@ class Smoother {
       : mesh_(mesh), grid_(grid), pool_(pool), neighbours_(mesh, pool), next_(mesh.positions.size()) {}
 
   void run(double kernelVariance, int passes) {
-    if (passes == 0) return;
     const std::vector<Vec3f> start = mesh_.positions;
     for (int pass = 0; pass < passes; ++pass) {
       forAll([&](std::size_t v) {
@@ -88,8 +90,9 @@ class Smoother {
       });
       mesh_.positions.swap(next_);
     }
-    putBack(start, static_cast<float>(kernelVariance), passes);
+    if (passes > 0) putBack(start, static_cast<float>(kernelVariance));
     stayInLiquid();
+    untangle(mesh_, start, grid_, pool_);
   }
 
  private:
@@ -106,40 +109,53 @@ class Smoother {
     const Vec3f low = mesh_.cells[v] - Vec3f::Constant(kLeash * grid_.cell()),
                 high = mesh_.cells[v] + Vec3f::Constant((1 + kLeash) * grid_.cell());
     to = to.cwiseMax(low).cwiseMin(high);
-    if (mesh_.holds[v] == Hold::wall) {
-      Vec3f normal;
-      const float distance = grid_.boundary()->distance(to, normal);
-      to -= distance * normal;
-    }
+    if (mesh_.holds[v] != Hold::none) grid_.ontoWall(to);
     return to;
   }
 
-  /// A pass moves a smooth surface by kShare e^2/4 times its Laplacian, e^2 the mean square of the edges; a
-  /// kernel of the variance s^2 along each axis has moved it by s^2/2 times that. What the passes have done
-  /// is known, and so is both.
-  void putBack(const std::vector<Vec3f>& start, float kernelVariance, int passes) {
-    std::vector<Vec3f> moved(start.size());
-    forAll([&](std::size_t v) { moved[v] = mesh_.positions[v] - start[v]; });
+  /// What the passes have moved the surface as a whole goes back, and so does what the kernel has: one with
+  /// the variance s^2 along each axis moves a smooth surface by s^2 / 2 times its Laplacian, which is 4 / e^2
+  /// times the way to the mean of a vertex's neighbours, e^2 being the mean square of their distances.
+  void putBack(const std::vector<Vec3f>& start, float kernelVariance) {
+    std::vector<Vec3f> back(start.size());
+    std::vector<float> lengths(start.size()), nextLengths(start.size());
+    forAll([&](std::size_t v) {
+      const auto around = neighbours_.of(v);
+      const Vec3f& p = mesh_.positions[v];
+      back[v] = start[v] - p;
+      if (!around.empty()) {
+        float squares = 0;
+        for (const std::uint32_t n : around) squares += (mesh_.positions[n] - p).squaredNorm();
+        squares /= static_cast<float>(around.size());
+        back[v] -= 2 * kernelVariance / std::max(squares, kLeastEdge * grid_.cell() * grid_.cell()) *
+                   (meanOf(around, mesh_.positions) - p);
+      }
+      lengths[v] = back[v].norm();
+    });
     for (int pass = 0; pass < kDisplacementPasses; ++pass) {
       forAll([&](std::size_t v) {
         const auto around = neighbours_.of(v);
-        next_[v] = around.empty() ? moved[v] : Vec3f(0.5F * (moved[v] + meanOf(around, moved)));
+        float sum = 0;
+        for (const std::uint32_t n : around) sum += lengths[n];
+        next_[v] = around.empty() ? back[v] : Vec3f(0.5F * (back[v] + meanOf(around, back)));
+        nextLengths[v] =
+            around.empty() ? lengths[v] : 0.5F * (lengths[v] + sum / static_cast<float>(around.size()));
       });
-      moved.swap(next_);
+      back.swap(next_);
+      lengths.swap(nextLengths);
     }
     const float most = kMostBack * grid_.spacing();
     forAll([&](std::size_t v) {
-      const auto around = neighbours_.of(v);
       const Vec3f p = mesh_.positions[v];
       next_[v] = p;
-      if (around.empty()) return;
-      float squares = 0;
-      for (const std::uint32_t n : around) squares += (start[n] - start[v]).squaredNorm();
-      squares /= static_cast<float>(around.size());
-      const float passed = kShare * static_cast<float>(passes) * squares / 4;
-      Vec3f back = -(1 + kernelVariance / 2 / std::max(passed, 1e-12F)) * moved[v];
-      if (const float length = back.norm(); length > most) back *= most / length;
-      next_[v] = held(v, p, p + back);
+      if (neighbours_.of(v).empty()) return;
+      const float smooth = std::clamp(2 - lengths[v] / most, 0.0F, 1.0F);
+      next_[v] = p + back[v];
+      if (smooth < 1) {
+        const Vec3f own = mesh_.holds[v] == Hold::none ? grid_.onLevel(start[v]) : start[v];
+        next_[v] = own + smooth * (next_[v] - own);
+      }
+      next_[v] = held(v, p, next_[v]);
     });
     mesh_.positions.swap(next_);
   }
