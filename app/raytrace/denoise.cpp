@@ -10,7 +10,7 @@ namespace {
 /// Rows that are worked on as one; windows of this radius around a pixel; patches of this radius (pixels).
 constexpr int kBand = 24, kWindow = 7, kPatch = 3;
 /// How unlike patches and guides may be, in standard deviations of their noise.
-constexpr float kAlikeColor = 0.45F, kAlikeGuide = 0.6F;
+constexpr float kAlikeColor = 0.8F, kAlikeGuide = 0.8F;
 /// Least differences of guides that count: of normals and albedo, of logarithms of distance.
 constexpr float kLeastGuide = 2e-3F, kLeastDistance = 2e-4F;
 

@@ -60,13 +60,17 @@ Ray throughInterface(const Departure& from, Place beyond) {
 /// The ray that leaves; of several starts each is another way to read a place where rounding decides.
 Ray depart(const Departure& from, const Stage& stage, int start) {
   const Event& event = from.event;
+  const bool other = start == 1 || start == 3;
   Ray ray;
   if (event.kind == Event::Kind::matt) {
     ray = {event.point, cosineDirection(event.shading, from.one, from.two), from.arrival.place};
+    if (ray.place.medium != Medium::glass) {
+      ray.place.medium = other ? otherFluid(event.before) : event.before;
+    }
     if (ray.direction.dot(event.normal) <= 0) ray.direction = reflected(ray.direction, event.normal);
   } else {
     Place beyond = event.beyond;
-    if (event.byLabel && (start == 1 || start == 3)) beyond.medium = otherFluid(beyond.medium);
+    if (event.byLabel && other) beyond.medium = otherFluid(beyond.medium);
     ray = throughInterface(from, beyond);
   }
   constexpr float kOffsets[kStarts] = {1, 1, 30, 30};
@@ -122,7 +126,8 @@ PathSample tracePath(const Stage& stage, const Vec3f& eye, const Vec3f& directio
           ray = depart(last, stage, start);
           event = stage.next(ray.origin, ray.direction, ray.place);
         }
-        if (event.before != ray.place.medium) {
+        // A matt wall lets nothing through: the path goes on by what its place says.
+        if (event.before != ray.place.medium && event.kind != Event::Kind::matt) {
           ++counts.leaked;
           return sample;
         }
