@@ -76,8 +76,9 @@ class PreparationNotes final : public ProgressObserver {
     if (elapsed < kPatience || (!first && silent < (terminal_ ? kRedraw : kRepeat))) return;
     told_ = now;
     shown_ = terminal_;
-    std::fprintf(stderr, "%s%s: %.0f %%, %.0f s%s", terminal_ ? "\r" : "", what_.c_str(), 100 * part, elapsed,
-                 terminal_ ? "\033[K" : "\n");
+    std::fprintf(stderr, "%s%s: %.0f %%, %.0f s", terminal_ ? "\r" : "", what_.c_str(), 100 * part, elapsed);
+    if (part > kTelling && part < 1) std::fprintf(stderr, ", %.0f s left", elapsed * (1 / part - 1));
+    std::fputs(terminal_ ? "\033[K" : "\n", stderr);
     std::fflush(stderr);
   }
   void ended() override {
@@ -89,6 +90,7 @@ class PreparationNotes final : public ProgressObserver {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr double kPatience = 1, kRedraw = 0.1, kRepeat = 5;  // (s)
+  static constexpr double kTelling = 0.02;  ///< part from which on time left can be told
 
   const bool terminal_ = isatty(STDERR_FILENO) == 1;
   std::string what_;

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/commands/pictures.h"
 #include "app/platform/context.h"
+#include "app/raytrace/embree.h"
 #include "app/render/image.h"
 #include "app/viewer/viewer.h"
 #include "core/base/files.h"
@@ -24,30 +26,6 @@
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
-
-inline constexpr int kSheetGutter = 6;  ///< between the cells of a sheet (pixels)
-
-struct RenderOptions {
-  std::string scene, out, times, size = "1280x720", compare;
-  bool panels = false, timings = false;
-};
-
-/// One run of the scene: what is changed in it, and how that is called on the picture.
-struct RenderVariant {
-  std::vector<Override> overrides;
-  std::string note;
-  Scene scene;
-};
-
-struct RenderJob {
-  std::vector<RenderVariant> variants;  ///< one, or those of --compare in the given order
-  std::vector<double> times;            ///< rising (s)
-  int width = 0, height = 0;            ///< of one picture or cell (pixels)
-  std::filesystem::path folder;
-};
-
-/// Throws InputError with every fault found.
-RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& common);
 
 // A picture on disk: the PNG, and beside it a JSON file that says what it shows.
 
@@ -70,6 +48,8 @@ struct PictureContext {
   bool panels = false;
   std::string colorField, colorUnit;
   std::array<double, 2> colorRange{0, 1};
+  int samples = 0;  ///< of each pixel, where the picture is ray traced; else 0
+  std::uint32_t seed = 0;
 };
 
 /// Writes `file` (.png) and its sidecar (.json).
@@ -82,13 +62,41 @@ void writeSheet(const std::filesystem::path& file, const Image& image, const Pic
 // `migiwa render SCENE`: pictures without a display.
 namespace {
 
+/// By OpenGL, as the window does.
+class ViewerTaker final : public PictureTaker {
+ public:
+  ViewerTaker(const Scene& scene, const WallDrawing& walls, const ViewerOptions& options,
+              const RenderJob& job)
+      : viewer_(scene, walls, options), job_(job) {}
+
+  Image take(const Simulation&, const FrameView& frame) override {
+    return viewer_.takePicture(frame, RunStatus{}, job_.width, job_.height);
+  }
+  const Viewer& viewer() const { return viewer_; }
+
+ private:
+  Viewer viewer_;
+  const RenderJob& job_;
+};
+
 /// Draws the scene's variants; how a picture is kept is the caller's business.
 class Drawing {
  public:
   using Keep = std::function<void(std::size_t time, const Image&, const PictureRecord&)>;
 
   Drawing(const RenderJob& job, const RenderOptions& options, const CommonOptions& common)
-      : job_(job), options_(options), common_(common), context_(makeEglContext()) {}
+      : job_(job), options_(options), common_(common) {
+    pictures_.scene = options_.scene;
+    if (job_.rayTraced) {
+      pictures_.renderer = "ray traced";
+      pictures_.samples = job_.samples;
+      pictures_.seed = job_.seed;
+    } else {
+      context_ = makeEglContext();
+      pictures_.renderer = context_->renderer();
+      pictures_.panels = options_.panels;
+    }
+  }
 
   /// Hands over a picture of each time that the run reaches. Returns whether it went well; says so where it
   /// did not.
@@ -98,9 +106,7 @@ class Drawing {
     for (const std::string& warning : scene.warnings)
       std::cerr << options_.scene << ": warning: " << warning << '\n';
 
-    Viewer viewer(scene, simulation.walls(),
-                  {scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note});
-    describe(viewer, scene.view.color);
+    const std::unique_ptr<PictureTaker> taker = makeTaker(simulation, variant);
     TroubleNotes trouble(options_.scene);
     {
       ProgressBar progress(0, job_.times.back(), common_.quiet);
@@ -114,8 +120,8 @@ class Drawing {
         }
         if (simulation.frame() < frame) break;
         const FrameView view = simulation.drawnView();
-        keep(i, viewer.takePicture(view, RunStatus{}, job_.width, job_.height),
-             pictureRecord(view, variant.overrides));
+        progress.wipe();
+        keep(i, taker->take(simulation, view), pictureRecord(view, variant.overrides));
       }
     }
     if (!simulation.stopped()) return true;
@@ -126,10 +132,15 @@ class Drawing {
   const PictureContext& pictures() const { return pictures_; }
 
  private:
+  std::unique_ptr<PictureTaker> makeTaker(const Simulation& simulation, const RenderVariant& variant) {
+    if (job_.rayTraced) return makeStillTaker(job_, common_.threads);
+    const ViewerOptions shown{scaleFor(job_.width, job_.height), options_.panels, options_.timings,
+                              variant.note};
+    auto taker = std::make_unique<ViewerTaker>(simulation.scene(), simulation.walls(), shown, job_);
+    describe(taker->viewer(), simulation.scene().view.color);
+    return taker;
+  }
   void describe(const Viewer& viewer, ColorField field) {
-    pictures_.scene = options_.scene;
-    pictures_.renderer = context_->renderer();
-    pictures_.panels = options_.panels;
     pictures_.colorField = kColorFieldNames[static_cast<std::size_t>(field)];
     pictures_.colorUnit = viewer.colorInfo(field).unit;
     pictures_.colorRange = viewer.colorRange(field);
@@ -138,7 +149,7 @@ class Drawing {
   const RenderJob& job_;
   const RenderOptions& options_;
   const CommonOptions& common_;
-  std::unique_ptr<GlContext> context_;
+  std::unique_ptr<GlContext> context_;  ///< null where rays do without
   PictureContext pictures_;
 };
 
@@ -176,6 +187,8 @@ bool renderSheet(const RenderJob& job, Drawing& drawing) {
 
 int render(const RenderOptions& options, const CommonOptions& common) {
   const RenderJob job = checkedRenderJob(options, common);
+  if (job.rayTraced && !raysAvailable())
+    throw MissingError(std::string("--style raytraced: ") + raysMissingAdvice());
   Drawing drawing(job, options, common);
   makeFolder(job.folder, "--out");
   const bool good = options.compare.empty() ? renderPictures(job, drawing) : renderSheet(job, drawing);
@@ -208,6 +221,25 @@ Command renderCommand() {
               .value = "WIDTHxHEIGHT",
               .help = "Width and height in pixels.",
               .shownDefault = options->size},
+             {.name = "--style",
+              .target = &options->style,
+              .value = "STYLE",
+              .help =
+                  "particles: as in the window. raytraced: the water with its surface, and walls of glass "
+                  "or matt material.",
+              .shownDefault = options->style},
+             {.name = "--samples",
+              .target = &options->samples,
+              .value = "N",
+              .help = "Of each pixel of a ray-traced picture.",
+              .range = {{kFewestSamples, kMostSamples}},
+              .shownDefault = std::to_string(RenderJob{}.samples)},
+             {.name = "--seed",
+              .target = &options->seed,
+              .value = "N",
+              .help = "Of the random numbers of a ray-traced picture: the same one gives the same picture.",
+              .range = {{0, 4294967295}},
+              .shownDefault = "0"},
              {.name = "--ui", .target = &options->panels, .help = "Draws the window's panels, too."},
              {.name = "--timings",
               .target = &options->timings,
@@ -242,6 +274,31 @@ void requireDistinctNames(const std::vector<double>& times) {
           "expected times that differ in their first three decimals, found two that are " + name + " s");
     }
   }
+}
+
+/// What an option is that the style has no use for.
+void requireStyle(const RenderOptions& options, RenderJob& job) {
+  const auto style = std::find(kRenderStyles.begin(), kRenderStyles.end(), options.style);
+  if (style == kRenderStyles.end()) {
+    throw InputError("--style",
+                     "expected one of " + quotedList(kRenderStyles) + ", found \"" + options.style + "\"");
+  }
+  job.rayTraced = *style == "raytraced";
+  job.samples = options.samples.value_or(job.samples);
+  job.seed = static_cast<std::uint32_t>(options.seed.value_or(0));
+  FaultCollector collect;
+  const auto refuse = [&](bool given, const char* option, const char* other) {
+    if (given)
+      collect([&] {
+        throw InputError(
+            option, std::string("expected --style ") + other + " beside it, found --style " + options.style);
+      });
+  };
+  refuse(job.rayTraced && options.panels, "--ui", "particles");
+  refuse(job.rayTraced && options.timings, "--timings", "particles");
+  refuse(!job.rayTraced && options.samples.has_value(), "--samples", "raytraced");
+  refuse(!job.rayTraced && options.seed.has_value(), "--seed", "raytraced");
+  collect.raise();
 }
 
 void requireFolderName(const std::filesystem::path& folder) {
@@ -283,6 +340,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
     job.width = width, job.height = height;
   });
   collect([&] { requireFolderName(job.folder); });
+  collect([&] { requireStyle(options, job); });
 
   const auto addVariant = [&](const std::vector<Override>& overrides, const std::string& itsNote) {
     collect([&] {
@@ -323,6 +381,11 @@ double roundedTime(double seconds) {
 }
 
 Json json(const PictureContext& context, const Image& image) {
+  if (context.samples > 0) {
+    return {{"scene", context.scene}, {"size", {image.width, image.height}},
+            {"style", "raytraced"},   {"samples", context.samples},
+            {"seed", context.seed},   {"renderer", context.renderer}};
+  }
   return {{"scene", context.scene},
           {"size", {image.width, image.height}},
           {"panels", context.panels},

@@ -263,7 +263,42 @@ void describeCamera(Visitor& visitor, Visited<Visitor, Camera>& camera) {
 }
 
 template <class Visitor>
-void describeView(Visitor& visitor, Visited<Visitor, View>& view, bool& cameraPresent) {
+void describeShares(Visitor& visitor, std::string_view key, Visited<Visitor, Vec3d>& shares, double least,
+                    const FieldDoc& doc) {
+  visitor.vector(key, shares, doc);
+  if (visitor.valid({key}) && (shares.minCoeff() < least || shares.maxCoeff() > 1))
+    visitor.fault(key, least > 0 ? "expected red, green and blue from 0.001 to 1, found one that is not"
+                                 : "expected red, green and blue from 0 to 1, found one that is not");
+}
+
+template <class Visitor>
+void describeLook(Visitor& visitor, Visited<Visitor, Look>& look, std::size_t surfaces) {
+  describeShares(
+      visitor, "water_color", look.waterColor, 1e-3,
+      {"1", "Red, green and blue that white light keeps on its way through water of water_depth."});
+  visitor.number("water_depth", look.waterDepth, Range::length(kLargestCoordinate),
+                 {"m", "The way through water after which light has water_color."});
+  describeShares(visitor, "matt_color", look.mattColor, 0,
+                 {"1", "Red, green and blue that matt walls throw back."});
+  visitor.number(
+      "light_turn", look.lightTurn, Range::closed(-360, 360),
+      {"degrees", "Turns the light about the up axis, from its place behind the scene and to the left."});
+  visitor.list("walls", look.walls.size(), {"", "The materials of boundary/surfaces, in their order."},
+               [&](auto& wall, std::size_t at) {
+                 if constexpr (Visitor::kChanges) look.walls.resize(at + 1);
+                 wall.choice("material", look.walls[at], kWallMaterialNames,
+                             {"",
+                              "Of what the wall is: auto is glass for what holds the fluid and matt for what "
+                              "stands in it; hidden is not shown at all.",
+                              Presence::required});
+               });
+  if (look.walls.size() > surfaces)
+    visitor.fault("walls", "expected at most one entry for each of boundary/surfaces (" +
+                               std::to_string(surfaces) + "), found " + std::to_string(look.walls.size()));
+}
+
+template <class Visitor>
+void describeView(Visitor& visitor, Visited<Visitor, View>& view, std::size_t surfaces, bool& cameraPresent) {
   visitor.object(
       "camera", {"", "Left out: one that sees the whole scene."},
       [&](auto& fields) { describeCamera(fields, view.camera); }, &cameraPresent);
@@ -285,6 +320,8 @@ void describeView(Visitor& visitor, Visited<Visitor, View>& view, bool& cameraPr
       &view.hasColorRange);
   if (view.hasColorRange && view.colorRange[0] >= view.colorRange[1])
     visitor.fault("color_range", "expected the smaller value first, found it last");
+  visitor.object("look", {"", "How ray-traced pictures show water and walls."},
+                 [&](auto& fields) { describeLook(fields, view.look, surfaces); });
 }
 
 /// Returns whether there is a camera.
@@ -319,7 +356,8 @@ bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   bool viewPresent = true;
   visitor.object(
       "view", {"", "What pictures show."},
-      [&](auto& fields) { describeView(fields, scene.view, cameraPresent); }, &viewPresent);
+      [&](auto& fields) { describeView(fields, scene.view, scene.surfaces.size(), cameraPresent); },
+      &viewPresent);
   return viewPresent && cameraPresent;
 }
 

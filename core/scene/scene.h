@@ -49,6 +49,26 @@ struct ClipPlane {
   bool operator==(const ClipPlane&) const = default;
 };
 
+/// What a wall is made of in a ray-traced picture.
+enum class WallMaterial {
+  automatic,  ///< glass what holds the fluid, matt what stands in it
+  glass,
+  matt,
+  hidden  ///< not shown: water that touches it looks as if nothing did
+};
+inline constexpr std::array<std::string_view, 4> kWallMaterialNames{"auto", "glass", "matt", "hidden"};
+
+/// How ray-traced pictures show water and walls.
+struct Look {
+  Vec3d waterColor{0.45, 0.8, 0.88};  ///< of white light that has gone through one waterDepth of water
+  double waterDepth = 1;              ///< (unit: m)
+  std::vector<WallMaterial> walls;    ///< in the order of the surfaces; the rest is automatic
+  Vec3d mattColor{0.7, 0.68, 0.65};   ///< share of light that matt walls throw back
+  double lightTurn = 0;               ///< of the light about the up axis (unit: degrees, range: [-360, 360])
+
+  bool operator==(const Look&) const = default;
+};
+
 struct View {
   Camera camera;
   ClipPlane clip;
@@ -57,6 +77,7 @@ struct View {
   bool hasColorRange = false;
   std::array<double, 2> colorRange{
       0, 1};  ///< ends of the colour map, in the field's unit; used if hasColorRange
+  Look look;
 
   bool operator==(const View&) const = default;
 };

@@ -252,6 +252,11 @@ bool Box::enclosed(TriangleMesh& mesh) const {
   return true;
 }
 
+std::optional<ClosedForm> Box::closedForm() const {
+  return ClosedForm{ClosedForm::Kind::box, geometry_.center, geometry_.axes, geometry_.halfExtents,
+                    fluid_ == Fluid::inside};
+}
+
 Bounds Box::bounds() const {
   Bounds bounds;
   for (int index = 0; index < 8; ++index) bounds.include(corner(index));

@@ -260,6 +260,15 @@ void MovingSurface::facets(const Vec3f& p, float supportRadius, std::vector<Wall
   }
 }
 
+std::optional<ClosedForm> MovingSurface::closedForm() const {
+  std::optional<ClosedForm> form = rest_->closedForm();
+  if (!form) return form;
+  const Pose pose = motion().at(now_);
+  form->center = pose * form->center;
+  form->axes = pose.linear() * form->axes;
+  return form;
+}
+
 Bounds MovingSurface::bounds() const {
   return migiwa::moved(rest_->bounds(), motion().at(now_));
 }

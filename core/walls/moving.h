@@ -54,6 +54,7 @@ class MovingSurface final : public Surface {
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   bool faceted() const override { return rest_->faceted(); }
   void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override;
+  std::optional<ClosedForm> closedForm() const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
   WallMesh mesh() const override;

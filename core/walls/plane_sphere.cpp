@@ -59,6 +59,13 @@ void Plane::pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) con
   if (std::abs(d) < reach) out.push_back({unit_, d, p - d * unit_});
 }
 
+std::optional<ClosedForm> Plane::closedForm() const {
+  const Vec3d normal = normal_.normalized(), across = normal.unitOrthogonal();
+  ClosedForm form{.kind = ClosedForm::Kind::plane, .center = point_};
+  form.axes << across, normal.cross(across), normal;
+  return form;
+}
+
 void Plane::firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const {
   hitPlane(unit_, unit_.dot(origin) - offset_, directions, hits);
 }
@@ -205,6 +212,13 @@ bool Sphere::enclosed(TriangleMesh& mesh) const {
     }
   }
   return true;
+}
+
+std::optional<ClosedForm> Sphere::closedForm() const {
+  return ClosedForm{.kind = ClosedForm::Kind::sphere,
+                    .center = centerExact_,
+                    .halfExtents = Vec3d::Constant(radiusExact_),
+                    .fluidInside = fluid_ == Fluid::inside};
 }
 
 Bounds Sphere::bounds() const {

@@ -28,6 +28,7 @@ class Plane final : public Surface {
   void pieces(const Vec3f& p, float reach, std::vector<WallPiece>& out) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
   bool planar() const override { return true; }
+  std::optional<ClosedForm> closedForm() const override;
   Bounds bounds() const override { return {}; }
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
@@ -62,6 +63,7 @@ class Sphere final : public Surface {
   bool convex() const override { return fluid_ == Fluid::outside; }
   bool crosses(const Vec3f& from, const Vec3f& to, Vec3f& normal, float& entry) const override;
   bool enclosed(TriangleMesh& mesh) const override;
+  std::optional<ClosedForm> closedForm() const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
 
@@ -107,6 +109,7 @@ class Box final : public Surface {
   bool faceted() const override { return fluid_ == Fluid::outside; }
   void facets(const Vec3f& p, float supportRadius, std::vector<WallFacet>& out) const override;
   bool enclosed(TriangleMesh& mesh) const override;
+  std::optional<ClosedForm> closedForm() const override;
   Bounds bounds() const override;
   void wireframe(const Bounds& scene, std::vector<LineSegment>& out) const override;
   const BoxGeometry* tank() const override { return fluid_ == Fluid::inside ? &geometry_ : nullptr; }

@@ -138,6 +138,18 @@ struct BoxGeometry {
   Vec3d halfExtents;     ///< metres
 };
 
+/// The solid of a wall that is a plane, a box or a sphere, or what that leaves of space.
+struct ClosedForm {
+  enum class Kind { plane, box, sphere };
+
+  Kind kind = Kind::plane;
+  Vec3d center = Vec3d::Zero();  ///< of a plane any point of it (m)
+  Eigen::Matrix3d axes =
+      Eigen::Matrix3d::Identity();    ///< columns: unit; of a plane the last one points into the fluid
+  Vec3d halfExtents = Vec3d::Zero();  ///< of a sphere its radius, three times (m)
+  bool fluidInside = false;
+};
+
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -243,6 +255,9 @@ class Surface {
   /// nothing.
   virtual bool enclosed(TriangleMesh& /*mesh*/) const { return false; }
 
+  /// Nothing for other shapes.
+  virtual std::optional<ClosedForm> closedForm() const { return std::nullopt; }
+
   /// The finite extent, empty for a surface without one.
   virtual Bounds bounds() const = 0;
   /// Lines that show the wall; `scene` bounds what an infinite wall draws.
@@ -304,6 +319,7 @@ class StandIn : public Surface {
   void drawnNodes(std::vector<WallNode>& out) const override { shape_->drawnNodes(out); }
   const BoxGeometry* tank() const override { return shape_->tank(); }
   bool enclosed(TriangleMesh& mesh) const override { return shape_->enclosed(mesh); }
+  std::optional<ClosedForm> closedForm() const override { return shape_->closedForm(); }
 
  protected:
   std::shared_ptr<const Surface> shape_;  ///< null: not read yet

@@ -84,6 +84,8 @@ TEST(Borders, ALibraryShowsOnlyWhereItIsWrapped) {
   EXPECT_EQ(checkBorders({file("core/solver/a.cpp", "#include <nlohmann/json.hpp>\n")}).size(), 1u);
   EXPECT_EQ(checkBorders({file("core/io/a.cpp", "#include <glad/gl.h>\n")}).size(), 1u);
   EXPECT_EQ(checkBorders({file("app/commands/a.cpp", "#include <EGL/egl.h>\n")}).size(), 1u);
+  expectNone(checkBorders({file("app/raytrace/embree.cpp", "#include <embree3/rtcore.h>\n")}));
+  EXPECT_EQ(checkBorders({file("app/commands/a.cpp", "#include <embree4/rtcore.h>\n")}).size(), 1u);
   EXPECT_EQ(checkBorders({file("core/solver/a.cpp", "#include <chrono>\n#include <random>\n")}).size(), 2u);
 }
 
