@@ -35,6 +35,7 @@ void visitReport(SomeReport& report, const Visit& visit) {
   visit("/ns_per_particle_iteration", report.nanosecondsPerParticleIteration);
   visit("/iterations/mean", report.iterationsMean);
   visit("/iterations/max", report.iterationsMax);
+  visit("/iterations/pressure", report.pressureIterationsMean);
   visit("/density_error/mean", report.densityErrorMean);
   visit("/density_error/max", report.densityErrorMax);
   visit("/lost_particles", report.lostParticles);
@@ -405,6 +406,8 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
       ratio(1e9 * iterationSeconds(run.stages), run.particleIterationSum);
   report.iterationsMean = ratio(run.iterationSum, steps);
   report.iterationsMax = run.iterationMax;
+  if (simulation.settings().solver.velocityStep == VelocityStep::projection)
+    report.pressureIterationsMean = ratio(run.pressureIterationSum, steps);
   report.densityErrorMean = ratio(run.densityErrorSum, steps);
   report.densityErrorMax = run.densityErrorMax;
   report.lostParticles = static_cast<double>(run.lostParticles);

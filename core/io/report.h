@@ -42,7 +42,7 @@ struct Report {
   Measure stepMedian, stepP95;              ///< (ms)
   std::vector<StageTime> stages;            ///< seconds a substep
   Measure nanosecondsPerParticleIteration;  ///< (ns)
-  Measure iterationsMean, iterationsMax;
+  Measure iterationsMean, iterationsMax, pressureIterationsMean;
   Measure densityErrorMean, densityErrorMax;
   Measure lostParticles, nonfiniteParticles;
   /// started + emitted = particles + left + drained; the lost ones are among the particles.

@@ -32,6 +32,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   stepSeconds.push_back(static_cast<float>(seconds));
   stages.add(state.times);
   iterationSum += state.iterations;
+  pressureIterationSum += state.projects() ? state.pressureIterations : 0;
   particleIterationSum += static_cast<double>(state.particles.size()) * state.iterations;
   iterationMax = std::max(iterationMax, state.iterations);
   const IterationError& error = state.errors.back();
@@ -82,6 +83,7 @@ void RunStatistics::visit(StateVisitor& visitor) {
   visitor.number("/statistics/simulated_s", simulatedSeconds);
   visitor.number("/statistics/wall_s", wallSeconds);
   visitor.number("/statistics/iterations/sum", iterationSum);
+  visitor.number("/statistics/iterations/pressure_sum", pressureIterationSum);
   visitor.number("/statistics/iterations/with_particles", particleIterationSum);
   visitor.integer("/statistics/iterations/max", iterationMax);
   visitor.number("/statistics/density_error/sum", densityErrorSum);

@@ -188,6 +188,7 @@ struct RunStatistics {
   std::vector<float> stepSeconds;  ///< wall time of each substep
   StageTimes stages;               ///< sums over the run
   double iterationSum = 0;
+  double pressureIterationSum = 0;  ///< of projections
   double particleIterationSum = 0;  ///< sum over substeps of particles times iterations
   int iterationMax = 0;
   double densityErrorSum = 0;  ///< sum over substeps of the mean over particles

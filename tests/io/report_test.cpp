@@ -57,6 +57,7 @@ Report filledReport() {
   report.nanosecondsPerParticleIteration = 41;
   report.iterationsMean = 3.5;
   report.iterationsMax = 20;
+  report.pressureIterationsMean = 4.5;
   report.densityErrorMean = 0.0078125;
   report.densityErrorMax = 0.125;
   report.lostParticles = 0;
