@@ -17,7 +17,7 @@ unsigned char* deflateForPng(unsigned char* bytes, int size, int* outSize, int /
   uLongf length = compressBound(static_cast<uLong>(size));
   auto* out = static_cast<unsigned char*>(std::malloc(length));
   if (out == nullptr ||
-      compress2(out, &length, bytes, static_cast<uLong>(size), Z_BEST_COMPRESSION) != Z_OK) {
+      compress2(out, &length, bytes, static_cast<uLong>(size), Z_DEFAULT_COMPRESSION) != Z_OK) {
     std::free(out);
     return nullptr;
   }

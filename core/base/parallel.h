@@ -80,6 +80,27 @@ T parallelReduce(ThreadPool& pool, std::size_t n, T initial, const Body& body, c
   return total;
 }
 
+/// body(i) for i < n.
+template <class Body>
+void parallelEach(ThreadPool& pool, std::size_t n, const Body& body) {
+  parallelFor(pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// The sum of term(i) over i < n, in one order whatever the number of threads.
+template <class Term>
+double parallelSum(ThreadPool& pool, std::size_t n, const Term& term) {
+  return parallelReduce(
+      pool, n, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += term(i);
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+}
+
 // Wall time of named stages, in the order in which they first ran. A stage that never ran has no entry.
 
 struct StageTime {

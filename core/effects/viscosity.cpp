@@ -129,24 +129,31 @@ class ImplicitShear {
     constexpr double kTolerance = 1e-3;
     constexpr int kMostIterations = 1000;
     const auto v = [&](std::size_t i) -> Float4& { return state_.particles.velocity[i]; };
-    each([&](std::size_t i) { direction_[i] = Float4(v(i).xyz()); });
+    parallelEach(state_.pool, state_.particles.size(),
+                 [&](std::size_t i) { direction_[i] = Float4(v(i).xyz()); });
     image();
-    each([&](std::size_t i) { direction_[i] = residual_[i] = Float4(Vec3f(-image_[i].xyz())); });
-    double square = sumOf([&](std::size_t i) { return dot(residual_[i], residual_[i]); });
+    parallelEach(state_.pool, state_.particles.size(),
+                 [&](std::size_t i) { direction_[i] = residual_[i] = Float4(Vec3f(-image_[i].xyz())); });
+    double square = parallelSum(state_.pool, state_.particles.size(),
+                                [&](std::size_t i) { return dot(residual_[i], residual_[i]); });
     const double enough = kTolerance * kTolerance * square;
     for (int iteration = 0; iteration < kMostIterations && square > enough; ++iteration) {
       image();
-      each([&](std::size_t i) { image_[i] = sum(image_[i], 1, direction_[i]); });
-      const double curvature = sumOf([&](std::size_t i) { return dot(direction_[i], image_[i]); });
+      parallelEach(state_.pool, state_.particles.size(),
+                   [&](std::size_t i) { image_[i] = sum(image_[i], 1, direction_[i]); });
+      const double curvature = parallelSum(state_.pool, state_.particles.size(),
+                                           [&](std::size_t i) { return dot(direction_[i], image_[i]); });
       const auto along = static_cast<float>(square / curvature);
-      each([&](std::size_t i) {
+      parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
         v(i) = sum(v(i), along, direction_[i]);
         residual_[i] = sum(residual_[i], -along, image_[i]);
       });
       const double before = square;
-      square = sumOf([&](std::size_t i) { return dot(residual_[i], residual_[i]); });
+      square = parallelSum(state_.pool, state_.particles.size(),
+                           [&](std::size_t i) { return dot(residual_[i], residual_[i]); });
       const auto keep = static_cast<float>(square / before);
-      each([&](std::size_t i) { direction_[i] = sum(residual_[i], keep, direction_[i]); });
+      parallelEach(state_.pool, state_.particles.size(),
+                   [&](std::size_t i) { direction_[i] = sum(residual_[i], keep, direction_[i]); });
     }
   }
 
@@ -157,23 +164,6 @@ class ImplicitShear {
     parallelFor(state_.pool, state_.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
       ofRange(state_, direction_.data(), image_.data(), scale_, begin, end);
     });
-  }
-  template <class Body>
-  void each(const Body& body) {
-    parallelFor(state_.pool, state_.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i) body(i);
-    });
-  }
-  template <class Term>
-  double sumOf(const Term& term) {
-    return parallelReduce(
-        state_.pool, state_.particles.size(), 0.0,
-        [&](std::size_t begin, std::size_t end) {
-          double total = 0;
-          for (std::size_t i = begin; i < end; ++i) total += term(i);
-          return total;
-        },
-        [](double a, double b) { return a + b; });
   }
 
   StepState& state_;

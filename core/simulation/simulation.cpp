@@ -14,6 +14,7 @@
 #include "core/base/progress.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
+#include "core/simulation/gauges.h"
 #include "core/simulation/run_state.h"
 #include "core/simulation/scene_surface.h"
 #include "core/simulation/state.h"
@@ -79,12 +80,9 @@ void Simulation::State::configure(const Settings& settings) {
   if (!boundary.empty()) {
     const BoundaryHandling handling = changed.boundary.handling;
     const bool isGamma = handling == BoundaryHandling::gamma;
-    picked =
-        makeHandling(handling, changed.boundary.gammaMethod,
-                     {boundary, changed.solver.kernel, supportRadius, changed.boundary.directions,
-                      changed.boundary.samples, changed.bounds(), &pool,
-                      changed.file.string() + (isGamma ? ":/boundary/gamma/method" : ":/boundary/handling"),
-                      static_cast<float>(changed.particleSpacing)});
+    GammaContext context = gammaContextOf(changed, boundary, pool);
+    if (!isGamma) context.place = changed.file.string() + ":/boundary/handling";
+    picked = makeHandling(handling, changed.boundary.gammaMethod, context);
     if (picked.method) handlingName = isGamma ? "gamma: " + picked.name : picked.name;
     if (isGamma) gammaName = picked.name;
   }
@@ -319,10 +317,7 @@ SceneSurface::SceneSurface(const Scene& scene, SurfaceOptions options, ThreadPoo
       kernel_(scene.solver.kernel),
       boundary_(wallsOf(scene, pool)) {
   if (boundary_.empty()) return;
-  gamma_ =
-      makeGammaMethod(scene.boundary.gammaMethod,
-                      {boundary_, kernel_, support_, scene.boundary.directions, scene.boundary.samples,
-                       scene.bounds(), &pool, scene.file.string() + ":/boundary/gamma/method", spacing_});
+  gamma_ = makeGammaMethod(scene.boundary.gammaMethod, gammaContextOf(scene, boundary_, pool));
 }
 
 SurfaceMesh SceneSurface::mesh(std::span<const Float4> positions, std::span<const Float4> velocities,

@@ -6,25 +6,6 @@
 
 namespace migiwa {
 
-namespace {
-
-constexpr auto kSum = [](double a, double b) { return a + b; };
-
-/// Sum of term(i) over the particles.
-template <class Term>
-double sumOver(const StepState& state, std::size_t count, const Term& term) {
-  return parallelReduce(
-      state.pool, count, 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        double sum = 0;
-        for (std::size_t i = begin; i < end; ++i) sum += term(i);
-        return sum;
-      },
-      kSum);
-}
-
-}  // namespace
-
 EnergySums& EnergySums::operator+=(const EnergySums& other) {
   kinetic += other.kinetic;
   velocity += other.velocity;
@@ -56,7 +37,7 @@ EnergySums energySums(const Particles& particles, std::size_t first, const Vec3f
 double predictedEnergy(const StepState& state) {
   // 1/2 |d/dt + g dt/2|^2 - g.d = 1/2 |d/dt|^2 - 1/2 g.d and a constant, d the move of the step.
   const float inverseStep = 1 / state.timeStep;
-  return sumOver(state, state.particles.size(), [&](std::size_t i) {
+  return parallelSum(state.pool, state.particles.size(), [&](std::size_t i) {
     const Vec3f move = state.current[i].xyz() - state.particles.position[i].xyz();
     return 0.5 * static_cast<double>((inverseStep * move).squaredNorm() - state.gravity.dot(move));
   });
@@ -64,7 +45,7 @@ double predictedEnergy(const StepState& state) {
 
 double velocityEnergy(const StepState& state) {
   const Vec3f gain = state.timeStep * state.gravity;
-  return sumOver(state, state.particles.size(), [&](std::size_t i) {
+  return parallelSum(state.pool, state.particles.size(), [&](std::size_t i) {
     const Vec3f velocity = state.particles.velocity[i].xyz();
     return 0.5 * static_cast<double>(velocity.squaredNorm() + gain.dot(velocity));
   });
@@ -79,7 +60,7 @@ void WallWork::iterate(double displacementTimesVelocity, float weight) {
 
 double wallPush(const StepState& state) {
   if (state.parameters.positionStep == PositionStep::paper) return 0;
-  return sumOver(state, state.wallSlots.size(), [&](std::size_t k) {
+  return parallelSum(state.pool, state.wallSlots.size(), [&](std::size_t k) {
     const WallSlot& slot = state.wallSlots[k];
     const std::size_t i = slot.particle;
     const Vec3f push = -state.supportRadius * state.wallPush(i) * slot.sample.pairGradient;

@@ -1,24 +1,35 @@
 // The velocity step "projection": pressure makes the velocities free of divergence, and particles move with
 // them; the density constraint then corrects positions alone.
 //
-// METHOD: with phi = dt p / rho0 and everything at the places x where the step begins,
-//   v = v* - grad phi,  phi >= 0,  laplacian phi = div v* where water is, p = 0 at its surface,
-// as in incompressible SPH (Cummins & Rudman 1999), discretised so that walls need no particles:
-//   div v*_i     = -1/gamma_i [ (m/rho0) sum_j grad W_ij . (v_i - v_j) - 2 rho_i/rho0 grad gamma_i . (v_i -
-//   v_wall) ] laplacian    = -1/gamma_i [ sum_j F_ij (phi_i - phi_j) + s_i phi_i ],   F_ij = -2 (m/rho0)
-//   W'(r_ij) / r_ij grad phi_i   = B_i (m/rho0) sum_j (phi_j - phi_i) grad W_ij,   B_i^-1 = -(m/rho0) sum_j
-//   grad W_ij (x_i - x_j)^T
+// METHOD: docs/method.md, "Velocities by projection", has the equations. With phi = dt p / rho0, everything
+// at the places x where the step begins, and the equation multiplied by gamma_i:
+//
+//   v = v* - grad phi, phi >= 0                       (incompressible SPH, Cummins & Rudman 1999)
+//
+//   sum_j F_ij (phi_i - phi_j) + s_i phi_i
+//     = (m/rho0) sum_j grad W_ij . (v*_i - v*_j)      compression by the neighbours
+//     - 2 rho_i/rho0 grad gamma_i . (v*_i - v_wall)   and by the wall
+//     + gamma_i min(rho_i/rho0 - 1, 0) / dt           room that less dense fluid has
+//   F_ij = -2 (m/rho0) W'(r_ij) / r_ij
+//
+//   grad phi_i = B_i (m/rho0) sum_j (phi_j - phi_i) grad W_ij
+//   B_i^-1 = -(m/rho0) sum_j grad W_ij (x_i - x_j)^T
+//
 // The wall is in the divergence alone: by Gauss's theorem the kernel's missing part is a flux through it, and
 // the velocity there is the wall's, so that the same flux is missing from the Laplacian; twice, for F_ij is
 // twice the slope. Near the surface air is missing from the Laplacian: with a pressure that falls to zero
-// over the distance e h to the surface, its part is s_i = 2 gamma'(e) / (h^2 e), gamma' being the plane's
-// slope of gamma, and e what a density below that of rest says: rho_i/rho0 = gamma(e). The gradient is exact
-// for a pressure that is linear in space, whatever the packing of the particles and however few lie on one
-// side: water at rest stays at rest. It does not conserve momentum to the last digit; where too few
+// over the distance e h to the surface, its part is
+//
+//   s_i = 2 |(m/rho0) sum_j grad W_ij - rho_i/rho0 grad gamma_i| / (e h)
+//
+// e being what a density below that of rest says of a plane surface: rho_i/rho0 = gamma(e). The gradient is
+// exact for a pressure that is linear in space, whatever the packing of the particles and however few lie on
+// one side: water at rest stays at rest. It does not conserve momentum to the last digit; where too few
 // neighbours make it ill-conditioned, in spray, the conserving sum of pairs stands in for it. The matrix is
 // symmetric and positive definite: conjugate gradients, preconditioned by the diagonal, from the pressure of
 // the step before.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/solver/step.h"
@@ -202,21 +213,22 @@ HWY_EXPORT(pushProjectionOfRange);
 
 namespace {
 
-/// The surface's share s_i of the diagonal times h^2, over the density: a table from 0 to that of rest.
+/// 2 / e over the density, faded out inside: what `missing` is multiplied by. A table from 0 to the density
+/// of rest.
 class SurfaceShare {
  public:
   SurfaceShare(KernelType kernel, float supportRatio) {
     const float nearest = 0.25F / supportRatio;  // a quarter of a spacing below the surface
     for (std::size_t k = 0; k < values_.size(); ++k) {
       const float density = static_cast<float>(k) / static_cast<float>(values_.size() - 1);
-      float low = -1, high = 1;  // gamma grows with e
+      if (surface(density) == 0) break;
+      float low = nearest, high = 1;  // gamma grows with e
       for (int halving = 0; halving < 24; ++halving) {
         const float middle = 0.5F * (low + high);
         (withKernel(kernel, [&](auto shape) { return shape.planeGamma(middle); }) < density ? low : high) =
             middle;
       }
-      const float e = std::max(nearest, high);
-      values_[k] = surface(density) * 2 / e;
+      values_[k] = surface(density) * 2 / high;
     }
   }
   float operator()(float density) const {
@@ -252,20 +264,20 @@ class PotentialSolve {
     while (state_.pressureIterations < parameters.maxPressureIterations && sums.square > 0 &&
            sums.magnitude * toError > parameters.divergenceTolerance) {
       apply();
-      const double curvature = sumOf([&](std::size_t i) {
+      const double curvature = parallelSum(state_.pool, state_.particles.size(), [&](std::size_t i) {
         if (!b_.active[i]) b_.image[i] = 0;
         return static_cast<double>(b_.image[i]) * static_cast<double>(state_.paired[i].w);
       });
       if (!(curvature > 0)) break;
       const auto along = static_cast<float>(sums.square / curvature);
-      each([&](std::size_t i) {
+      parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
         b_.potential[i] += along * state_.paired[i].w;
         b_.residual[i] -= along * b_.image[i];
       });
       const double before = sums.square;
       sums = precondition();
       const auto keep = static_cast<float>(sums.square / before);
-      each([&](std::size_t i) {
+      parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
         state_.paired[i].w = b_.residual[i] / b_.diagonal[i] + keep * state_.paired[i].w;
       });
       ++state_.pressureIterations;
@@ -281,12 +293,12 @@ class PotentialSolve {
   /// The residual of the pressure of the step before, and the first direction.
   void begin() {
     const float dt = state_.timeStep;
-    each([&](std::size_t i) {
+    parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
       b_.potential[i] = dt * state_.projectedPressure[i];
       state_.paired[i] = Float4(state_.current[i].xyz(), b_.potential[i]);
     });
     apply();
-    each([&](std::size_t i) {
+    parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
       float& residual = b_.residual[i];
       residual -= b_.image[i];
       // Particles without pressure that do not come together have no part in the solve.
@@ -316,23 +328,6 @@ class PotentialSolve {
           return Sums{a.square + b.square, a.magnitude + b.magnitude};
         });
   }
-  template <class Body>
-  void each(const Body& body) {
-    parallelFor(state_.pool, state_.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i) body(i);
-    });
-  }
-  template <class Term>
-  double sumOf(const Term& term) {
-    return parallelReduce(
-        state_.pool, state_.particles.size(), 0.0,
-        [&](std::size_t begin, std::size_t end) {
-          double total = 0;
-          for (std::size_t i = begin; i < end; ++i) total += term(i);
-          return total;
-        },
-        [](double a, double b) { return a + b; });
-  }
 
   StepState& state_;
   ProjectionBuffers& b_;
@@ -340,21 +335,14 @@ class PotentialSolve {
 
 /// Work of the pressure on moving walls' account: its impulse on each particle times the wall's velocity.
 double pressureWork(const StepState& state) {
-  return parallelReduce(
-      state.pool, state.wallSlots.size(), 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        double sum = 0;
-        for (std::size_t k = begin; k < end; ++k) {
-          const WallSlot& slot = state.wallSlots[k];
-          const std::size_t i = slot.particle;
-          const float push =
-              2 * state.timeStep * state.projection.potential[i] * state.density[i] / state.supportRadius;
-          sum += static_cast<double>(
-              push * slot.sample.pairGradient.dot(state.boundary.wallVelocity(slot.at.xyz())));
-        }
-        return sum;
-      },
-      [](double a, double b) { return a + b; });
+  return parallelSum(state.pool, state.wallSlots.size(), [&](std::size_t k) {
+    const WallSlot& slot = state.wallSlots[k];
+    const std::size_t i = slot.particle;
+    const float fall = state.addsWallDensity() ? 1 : state.density[i];
+    const float push = 2 * state.timeStep * state.projection.potential[i] * fall / state.supportRadius;
+    const Vec3f velocity = state.boundary.wallVelocity(slot.at.xyz());
+    return static_cast<double>(push * slot.sample.pairGradient.dot(velocity));
+  });
 }
 
 }  // namespace
@@ -363,7 +351,6 @@ void stages::projectVelocities(StepState& state) {
   const std::size_t n = state.particles.size();
   ProjectionBuffers& buffers = state.projection;
   buffers.resize(n);
-  state.projectedPressure.resize(n, 0);
   state.density.resize(n);
   resizeTight(state.previous, n + 1);
   resizeTight(state.paired, n + 1);
@@ -383,12 +370,10 @@ void stages::projectVelocities(StepState& state) {
   });
   PotentialSolve(state).run();
   const float inverseStep = 1 / state.timeStep;
-  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float potential = std::max(buffers.potential[i], 0.0F);
-      buffers.potential[i] = state.paired[i].w = potential;
-      state.projectedPressure[i] = inverseStep * potential;
-    }
+  parallelEach(state.pool, n, [&](std::size_t i) {
+    const float potential = std::max(buffers.potential[i], 0.0F);
+    buffers.potential[i] = state.paired[i].w = potential;
+    state.projectedPressure[i] = inverseStep * potential;
   });
   const auto push = HWY_DYNAMIC_DISPATCH(pushProjectionOfRange);
   parallelFor(state.pool, n,

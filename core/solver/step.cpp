@@ -117,17 +117,15 @@ void updateVelocities(StepState& state, bool keep) {
 void takeVelocities(StepState& state) {
   Particles& particles = state.particles;
   const float inverseStep = 1 / state.timeStep;
-  parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      particles.velocity[i] = Float4(inverseStep * (state.current[i].xyz() - particles.position[i].xyz()));
+  parallelEach(state.pool, particles.size(), [&](std::size_t i) {
+    particles.velocity[i] = Float4(inverseStep * (state.current[i].xyz() - particles.position[i].xyz()));
   });
 }
 
 void moveAlong(StepState& state) {
   const Particles& particles = state.particles;
-  parallelFor(state.pool, particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      state.current[i].setXyz(particles.position[i].xyz() + state.timeStep * particles.velocity[i].xyz());
+  parallelEach(state.pool, particles.size(), [&](std::size_t i) {
+    state.current[i].setXyz(particles.position[i].xyz() + state.timeStep * particles.velocity[i].xyz());
   });
   projectAll(state);
 }
@@ -137,11 +135,9 @@ void updatePositions(StepState& state) {
   const std::size_t n = particles.size();
   std::vector<Float4>& position = state.before.position;
   resizeTight(position, n);
-  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f solved = state.current[i].xyz();
-      position[i] = Float4(solved, knownClearance(state, i, solved));
-    }
+  parallelEach(state.pool, n, [&](std::size_t i) {
+    const Vec3f solved = state.current[i].xyz();
+    position[i] = Float4(solved, knownClearance(state, i, solved));
   });
   particles.position.swap(position);
 }

@@ -14,9 +14,11 @@ namespace {
 
 using namespace migiwa::testing;
 
+/// Untrimmed: particles of a drop at rest are nearer to each other than the places of separate sources may
+/// be.
 void addParticle(Scene& scene, const Vec3d& at, const Vec3d& velocity = Vec3d::Zero()) {
   const Vec3d half = Vec3d::Constant(0.5 * kSpacing);
-  addFluid(scene, at - half, at + half, velocity);
+  addFluid(scene, at - half, at + half, velocity, false);
 }
 
 std::string tension(double coefficient, double xsph) {
@@ -53,6 +55,7 @@ double period(const std::vector<Vec3d>& drop, double coefficient, double speed, 
   for (const Vec3d& at : drop) addParticle(scene, at, speed * stretch.cwiseProduct(at));
   scene.effects = effectsOf(tension(coefficient, 0));
   Simulation simulation(scene);
+  EXPECT_EQ(simulation.view().positions.size(), drop.size());
   const auto elongation = [&] {
     const FrameView view = simulation.view();
     const Vec3d centre = momentsOf(view).centre;

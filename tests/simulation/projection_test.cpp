@@ -168,20 +168,24 @@ TEST(Projection, ASavedStateGoesOnAsIfNothingHadHappened) {
   EXPECT_EQ(straight.stateHash(), resumed.stateHash());
 }
 
-// A state without a pressure of its own goes on with one, and the other way round.
+// A state without a pressure of its own goes on with one; without, it goes on as ever.
 TEST(Projection, CanBeSwitchedOnAndOffInARun) {
   const Scene scene = projected(smallDamBreak());
   Scene positions = scene;
   positions.solver.velocityStep = VelocityStep::positions;
   Simulation simulation(positions, 1);
   for (int k = 0; k < 20; ++k) simulation.advanceFrame();
-  for (const VelocityStep step : {VelocityStep::projection, VelocityStep::positions}) {
-    Simulation other(step == VelocityStep::projection ? scene : positions, 1);
-    StateImage::of(simulation).restore(other);
-    for (int k = 0; k < 20; ++k) other.advanceFrame();
-    EXPECT_FALSE(other.statistics().failed());
-    EXPECT_GT(other.view().info.energy.size(), 0U);
-  }
+  const StateImage image = StateImage::of(simulation);
+  Simulation switched(scene, 1), same(positions, 1);
+  image.restore(switched), image.restore(same);
+  for (int k = 0; k < 20; ++k) simulation.advanceFrame(), switched.advanceFrame(), same.advanceFrame();
+  EXPECT_EQ(same.stateHash(), simulation.stateHash());
+  EXPECT_NE(switched.stateHash(), simulation.stateHash());
+  EXPECT_FALSE(switched.statistics().failed());
+  Simulation back(positions, 1);
+  StateImage::of(switched).restore(back);
+  for (int k = 0; k < 20; ++k) back.advanceFrame();
+  EXPECT_FALSE(back.statistics().failed());
 }
 
 TEST(Projection, ParticlesThatComeAndGoKeepTheirPressures) {

@@ -81,7 +81,7 @@ TEST(Truth, TheStandingWaveKeepsHalfItsHeightAPeriod) {
 }
 
 // With velocities by projection waves keep their height and their period. What a wall has stirred stands too
-// high, for a disordered packing reads denser than the lattice: by one part in a hundred where the tank is
+// high, for a disordered packing reads denser than the lattice: by two parts in a hundred where the tank is
 // ten particles wide, by five where it is five.
 TEST(Truth, ProjectionKeepsWavesAndSwings) {
   const auto projection = [](const char* name, std::vector<std::string> overrides) {
