@@ -22,7 +22,7 @@ void Drain::fields(Visitor& visitor, Visited<Visitor, Drain>& self) {
     visitor.place("max", self.max,
                   {"m", "Corner with the largest coordinates, before the rotation.", Presence::required});
     visitor.object("rotation", {"", "Turns the box about its centre."},
-                   [&](auto& rotation) { Rotation::describe(rotation, self.rotation); });
+                   [&](auto& turn) { Rotation::describe(turn, self.rotation); });
   } else {
     visitor.place("center", self.center, {"m", "Centre of the ball.", Presence::required});
     visitor.number("radius", self.radius, Range::length(kLargestCoordinate),

@@ -81,8 +81,8 @@ void FluidSource::describeMotion(Visitor& visitor, Visited<Visitor, FluidSource>
         describeVelocityWave(fields, self.velocityWaves[at]);
       });
 }
-template void FluidSource::describeMotion(FieldVisitor&, FluidSource&);
-template void FluidSource::describeMotion(FieldWriter&, const FluidSource&);
+template void FluidSource::describeMotion<FieldVisitor>(FieldVisitor&, FluidSource&);
+template void FluidSource::describeMotion<FieldWriter>(FieldWriter&, const FluidSource&);
 
 Vec3d FluidSource::velocityAt(const Vec3d& p) const {
   Vec3d sum = velocity + ownVelocity(p);
