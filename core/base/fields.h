@@ -160,6 +160,18 @@ using FieldWriter = BasicFieldVisitor<Access::look>;
 template <class Visitor, class Part>
 using Visited = typename Visitor::template Value<Part>;
 
+/// A `Base` whose fields one function of `Derived` lists for both kinds of visitors:
+///   static void fields(auto& visitor, auto& self);
+/// It is public; `self` is const where the visitor only looks.
+template <class Derived, class Base>
+class Described : public Base {
+ public:
+  void describe(FieldVisitor& visitor) override { Derived::fields(visitor, static_cast<Derived&>(*this)); }
+  void describe(FieldWriter& visitor) const override {
+    Derived::fields(visitor, static_cast<const Derived&>(*this));
+  }
+};
+
 // The names of a registry's entries, for the scene keys that choose among them.
 
 /// `kEntries` is an array, in static storage, of structs with a member `name`.

@@ -70,11 +70,16 @@ HWY_EXPORT(partPairsOfRange);
 
 namespace {
 
-class ArtificialPressure final : public Effect {
+class ArtificialPressure final : public EffectOf<ArtificialPressure> {
  public:
-  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
-  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<ArtificialPressure>(*this); }
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("k", self.k_, Range::closed(0, 1),
+                   {"1", "Strength: the compression (rho/rho0 - 1) that pushes like a pair at delta_q."});
+    visitor.integer("n", self.n_, Range::closed(1, 8), {"1", "Power with which the push falls off."});
+    visitor.number("delta_q", self.deltaQ_, Range::halfOpen(0, 1),
+                   {"1", "Distance at which a pair pushes with strength k, over the support radius."});
+  }
+
   EffectStages stages() const override { return {.iteration = k_ > 0}; }
 
   void changePositions(StepState& state, float weight) const override {
@@ -93,15 +98,6 @@ class ArtificialPressure final : public Effect {
   }
 
  private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, ArtificialPressure>& self) {
-    visitor.number("k", self.k_, Range::closed(0, 1),
-                   {"1", "Strength: the compression (rho/rho0 - 1) that pushes like a pair at delta_q."});
-    visitor.integer("n", self.n_, Range::closed(1, 8), {"1", "Power with which the push falls off."});
-    visitor.number("delta_q", self.deltaQ_, Range::halfOpen(0, 1),
-                   {"1", "Distance at which a pair pushes with strength k, over the support radius."});
-  }
-
   double k_ = 0.1;
   int n_ = 4;
   double deltaQ_ = 0.2;

@@ -120,11 +120,13 @@ namespace {
 /// size makes the droplets of tests/effects/surface_tension_test.cpp swing with the period of Rayleigh 1879.
 constexpr float kCohesion = 3.2F, kArea = 0.4F;
 
-class SurfaceTension final : public Effect {
+class SurfaceTension final : public EffectOf<SurfaceTension> {
  public:
-  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
-  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<SurfaceTension>(*this); }
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("coefficient", self.coefficient_, Range::closed(0, 1e6),
+                   {"N/m", "Surface tension of the liquid against air; water has 0.072."});
+  }
+
   EffectStages stages() const override { return {.prediction = coefficient_ > 0}; }
 
   /// Brackbill, Kothe & Zemach 1992: a capillary wave as short as particles resolve must not run ahead.
@@ -154,12 +156,6 @@ class SurfaceTension final : public Effect {
   }
 
  private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, SurfaceTension>& self) {
-    visitor.number("coefficient", self.coefficient_, Range::closed(0, 1e6),
-                   {"N/m", "Surface tension of the liquid against air; water has 0.072."});
-  }
-
   double coefficient_ = 0.072;
 };
 

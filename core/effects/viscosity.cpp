@@ -171,11 +171,16 @@ class ImplicitShear {
   EffectBuffer &residual_, &direction_, &image_;
 };
 
-class Viscosity final : public Effect {
+class Viscosity final : public EffectOf<Viscosity> {
  public:
-  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
-  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<Viscosity>(*this); }
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("xsph", self.xsph_, Range::closed(0, 1),
+                   {"1", "Part of the velocity difference to the neighbours that a step takes away."});
+    visitor.number(
+        "kinematic", self.kinematic_, Range::closed(0, 1e3),
+        {"m^2/s", "Kinematic viscosity: 1e-6 is water, 1e-3 oil, 1e-2 honey. Set xsph to 0 for this alone."});
+  }
+
   EffectStages stages() const override { return {.velocity = xsph_ > 0 || kinematic_ > 0}; }
   std::size_t buffers() const override { return kinematic_ > 0 ? 1 : 0; }
 
@@ -195,15 +200,6 @@ class Viscosity final : public Effect {
   }
 
  private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, Viscosity>& self) {
-    visitor.number("xsph", self.xsph_, Range::closed(0, 1),
-                   {"1", "Part of the velocity difference to the neighbours that a step takes away."});
-    visitor.number(
-        "kinematic", self.kinematic_, Range::closed(0, 1e3),
-        {"m^2/s", "Kinematic viscosity: 1e-6 is water, 1e-3 oil, 1e-2 honey. Set xsph to 0 for this alone."});
-  }
-
   void smooth(StepState& state) const {
     const std::size_t n = state.particles.size();
     std::vector<Float4>& before = state.paired;

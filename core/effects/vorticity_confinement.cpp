@@ -165,11 +165,13 @@ void removeNetMotion(const StepState& state, std::vector<Float4>& accelerations)
   });
 }
 
-class VorticityConfinement final : public Effect {
+class VorticityConfinement final : public EffectOf<VorticityConfinement> {
  public:
-  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
-  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<VorticityConfinement>(*this); }
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("strength", self.strength_, Range::closed(0, 100),
+                   {"1/s", "Rate at which velocity differences across a support radius are fed."});
+  }
+
   EffectStages stages() const override { return {.velocity = strength_ > 0}; }
 
   void changeVelocities(StepState& state, std::span<EffectBuffer>) const override {
@@ -212,12 +214,6 @@ class VorticityConfinement final : public Effect {
   }
 
  private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, VorticityConfinement>& self) {
-    visitor.number("strength", self.strength_, Range::closed(0, 100),
-                   {"1/s", "Rate at which velocity differences across a support radius are fed."});
-  }
-
   double strength_ = 2;
 };
 

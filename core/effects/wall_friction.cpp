@@ -51,11 +51,13 @@ void share(const Vec3f& push, std::span<Contact> contacts) {
   }
 }
 
-class WallFriction final : public Effect {
+class WallFriction final : public EffectOf<WallFriction> {
  public:
-  void describe(FieldVisitor& visitor) override { fields(visitor, *this); }
-  void describe(FieldWriter& visitor) const override { fields(visitor, *this); }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<WallFriction>(*this); }
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("coefficient", self.coefficient_, Range::closed(0, 10),
+                   {"1", "Largest friction over the push of the wall, mu."});
+  }
+
   EffectStages stages() const override {
     return {.prediction = coefficient_ > 0, .iteration = coefficient_ > 0};
   }
@@ -91,12 +93,6 @@ class WallFriction final : public Effect {
   }
 
  private:
-  template <class Visitor>
-  static void fields(Visitor& visitor, Visited<Visitor, WallFriction>& self) {
-    visitor.number("coefficient", self.coefficient_, Range::closed(0, 10),
-                   {"1", "Largest friction over the push of the wall, mu."});
-  }
-
   void brake(StepState& state, std::size_t i, const Vec3f& push) const {
     const Vec3f at = state.current[i].xyz();
     Vec3f slip = at - state.particles.position[i].xyz();

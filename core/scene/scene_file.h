@@ -25,8 +25,9 @@ struct Override {
 
 /// Reads, applies the overrides, validates. Throws InputError with every fault found.
 Scene readScene(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
-/// The same for a text in memory; `name` stands in for the file in faults.
-Scene parseScene(std::string_view text, const std::filesystem::path& name,
+/// The same for a text in memory; `name` stands in for the file in faults, and names of files are relative to
+/// its folder.
+Scene parseScene(std::string_view text, const std::filesystem::path& name = "scene.json",
                  const std::vector<Override>& overrides = {});
 
 /// The scene's file and those that it includes, outermost first, as far as they can be found.

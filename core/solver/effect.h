@@ -55,6 +55,15 @@ class Effect {
   virtual void changeVelocities(StepState&, std::span<EffectBuffer>) const {}
 };
 
+/// An effect of the class `Derived`, which lists its fields once, as Described says.
+template <class Derived>
+class EffectOf : public Described<Derived, Effect> {
+ public:
+  std::unique_ptr<Effect> clone() const override {
+    return std::make_unique<Derived>(static_cast<const Derived&>(*this));
+  }
+};
+
 /// An effect under the name that the scene gives it: its stage.
 struct NamedEffect {
   std::string name;
@@ -69,5 +78,9 @@ std::unique_ptr<Effect> makeEffect(int effect);
 /// after those that are there. Call it before the first scene is read. Throws std::invalid_argument for a
 /// name that is taken or no lower-case word.
 void registerEffect(const std::string& name, std::function<std::unique_ptr<Effect>()> make);
+template <class Made>
+void registerEffect(const std::string& name) {
+  registerEffect(name, [] { return std::make_unique<Made>(); });
+}
 
 }  // namespace migiwa

@@ -210,19 +210,33 @@ bool projectAlongNormals(const Surface& surface, Vec3f& p, float margin) {
   return true;
 }
 
+float DistanceSurface::distance(const Vec3f& p, Vec3f& normal) const {
+  const double step = 1e-6 * bounds().size().norm();
+  const Vec3d at = p.cast<double>();
+  Vec3d gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3d offset = step * Vec3d::Unit(axis);
+    gradient[axis] = signedDistance(at + offset) - signedDistance(at - offset);
+  }
+  normal = gradient.isZero(0) ? Vec3f(Vec3f::UnitY()) : Vec3f(gradient.normalized().cast<float>());
+  return static_cast<float>(signedDistance(at));
+}
+
 void DistanceSurface::firstHits(const Vec3f& origin, const Directions& directions,
                                 std::span<float> hits) const {
   constexpr int kMostSteps = 128;
   constexpr float kTouching = 1e-5F;
-  Vec3f normal;
+  const auto distanceAt = [this](const Vec3f& p) {
+    return static_cast<float>(signedDistance(p.cast<double>()));
+  };
   const auto across = static_cast<float>(bounds().size().norm());
-  const float start = std::max(distance(origin, normal), 0.0F);
+  const float start = std::max(distanceAt(origin), 0.0F);
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const Vec3f direction(directions.x[k], directions.y[k], directions.z[k]);
     float at = start, left = start;
     for (int step = 0; step < kMostSteps && at < hits[k] && at < start + across && left > kTouching * across;
          ++step) {
-      left = distance(origin + at * direction, normal);
+      left = distanceAt(origin + at * direction);
       at += std::max(left, 0.0F);
     }
     if (left <= kTouching * across) hits[k] = std::min(hits[k], at);

@@ -331,6 +331,10 @@ class StandIn : public Surface {
 /// overridden.
 class DistanceSurface : public Surface {
  public:
+  /// Distance (m) of p, positive in the fluid. Called from all threads.
+  virtual double signedDistance(const Vec3d& p) const = 0;
+  /// The same with its normal by central differences, unless a shape knows it better.
+  float distance(const Vec3f& p, Vec3f& normal) const override;
   bool costlyDistance() const override { return true; }
   bool project(Vec3f& p, float margin) const override { return projectAlongNormals(*this, p, margin); }
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
@@ -343,6 +347,10 @@ std::unique_ptr<Surface> makeSurface(int shape);
 /// Adds a shape from outside the library: from then on the surfaces of a scene may name it. Call it before
 /// the first scene is read. Throws std::invalid_argument for a name that is taken or no lower-case word.
 void registerSurface(const std::string& name, std::function<std::unique_ptr<Surface>()> make);
+template <class Shape>
+void registerSurface(const std::string& name) {
+  registerSurface(name, [] { return std::make_unique<Shape>(); });
+}
 
 // First hits of rays with one plane: what planes and the faces of boxes share.
 

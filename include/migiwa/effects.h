@@ -1,8 +1,8 @@
 // Effects of your own: forces and whatever else acts on particles in a step.
 //
-//   Derive from Effect; registerEffect gives it its name under "effects" of a scene. Of the StepState that
-//   its functions get, these members are for effects: particles, current, density, gamma, neighbours, pool,
-//   boundary, timeStep, spacing, supportRadius, gravity.
+//   Derive from EffectOf<Mine>; registerEffect gives it its name under "effects" of a scene. Of the StepState
+//   that its functions get, these members are for effects: particles, current, density, gamma, neighbours,
+//   pool, boundary, timeStep, spacing, supportRadius, gravity.
 #pragma once
 
 #include "core/base/fields.h"

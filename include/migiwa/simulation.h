@@ -1,7 +1,7 @@
 // Simulations: made from a scene, advanced frame by frame, looked at, saved and resumed.
 //
 //   Simulation with its Settings, FrameView and FrameSnapshot; runUntil with a SettledSampler; writeSave and
-//   readSave; particle files by ParticleExport.
+//   readSave; particle files by ParticleExport; hexDigits for hashes.
 #pragma once
 
 #include "core/io/particle_export.h"

@@ -15,31 +15,23 @@ namespace migiwa {
 namespace {
 
 /// A ball that knows its distance only.
-class Ball final : public DistanceSurface {
+class Ball final : public Described<Ball, DistanceSurface> {
  public:
-  void describe(FieldVisitor& visitor) override {
-    visitor.number("radius", radius_, Range::length(10), {"m", "Radius.", Presence::required});
+  static void fields(auto& visitor, auto& self) {
+    visitor.number("radius", self.radius_, Range::length(10), {"m", "Radius.", Presence::required});
   }
-  void describe(FieldWriter& visitor) const override {
-    visitor.number("radius", radius_, Range::length(10), {"m", "Radius.", Presence::required});
-  }
-  float distance(const Vec3f& p, Vec3f& normal) const override {
-    normal = p.normalized();
-    return p.norm() - static_cast<float>(radius_);
-  }
+  double signedDistance(const Vec3d& p) const override { return p.norm() - radius_; }
   Bounds bounds() const override { return {Vec3d::Constant(-radius_), Vec3d::Constant(radius_)}; }
 
  private:
   double radius_ = 0.5;
 };
 
-class Push final : public Effect {
+class Push final : public EffectOf<Push> {
  public:
-  void describe(FieldVisitor& visitor) override { visitor.vector("by", by_, {"m/s^2", "Acceleration."}); }
-  void describe(FieldWriter& visitor) const override {
-    visitor.vector("by", by_, {"m/s^2", "Acceleration."});
+  static void fields(auto& visitor, auto& self) {
+    visitor.vector("by", self.by_, {"m/s^2", "Acceleration."});
   }
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<Push>(*this); }
   EffectStages stages() const override { return {.velocity = true}; }
   void changeVelocities(StepState& state, std::span<EffectBuffer>) const override {
     for (Float4& velocity : state.particles.velocity)
@@ -52,8 +44,8 @@ class Push final : public Effect {
 
 void registerOurs() {
   static const bool once = [] {
-    registerSurface("ball_of_ours", [] { return std::make_unique<Ball>(); });
-    registerEffect("push_of_ours", [] { return std::make_unique<Push>(); });
+    registerSurface<Ball>("ball_of_ours");
+    registerEffect<Push>("push_of_ours");
     return true;
   }();
   ASSERT_TRUE(once);
@@ -114,15 +106,27 @@ TEST(OutsideTheLibrary, RaysGoAheadByDistances) {
   }
 }
 
+TEST(OutsideTheLibrary, NormalsFollowFromDistances) {
+  const Ball ball;
+  for (const Vec3f& p : {Vec3f(0.5F, 0.1F, -0.2F), Vec3f(-3, 20, 7), Vec3f(0.01F, 0, -0.02F)}) {
+    Vec3f normal;
+    EXPECT_FLOAT_EQ(ball.distance(p, normal), static_cast<float>(p.cast<double>().norm() - 0.5));
+    EXPECT_NEAR((normal - p.normalized()).norm(), 0, 1e-6F);
+  }
+  // Where the distance has no gradient any unit vector will do.
+  Vec3f normal;
+  EXPECT_EQ(ball.distance(Vec3f::Zero(), normal), -0.5F);
+  EXPECT_FLOAT_EQ(normal.norm(), 1);
+}
+
 TEST(OutsideTheLibrary, NamesAreNewWords) {
   registerOurs();
-  const auto ball = [] { return std::make_unique<Ball>(); };
-  EXPECT_THROW(registerSurface("box", ball), std::invalid_argument);
-  EXPECT_THROW(registerSurface("ball_of_ours", ball), std::invalid_argument);
-  EXPECT_THROW(registerSurface("A Ball", ball), std::invalid_argument);
-  EXPECT_THROW(registerSurface("", ball), std::invalid_argument);
+  EXPECT_THROW(registerSurface<Ball>("box"), std::invalid_argument);
+  EXPECT_THROW(registerSurface<Ball>("ball_of_ours"), std::invalid_argument);
+  EXPECT_THROW(registerSurface<Ball>("A Ball"), std::invalid_argument);
+  EXPECT_THROW(registerSurface<Ball>(""), std::invalid_argument);
   EXPECT_THROW(registerSurface("nothing", {}), std::invalid_argument);
-  EXPECT_THROW(registerEffect("viscosity", [] { return std::make_unique<Push>(); }), std::invalid_argument);
+  EXPECT_THROW(registerEffect<Push>("viscosity"), std::invalid_argument);
 }
 
 TEST(OutsideTheLibrary, NamesStayWhereTheyAre) {
