@@ -22,6 +22,29 @@ std::vector<Vec3d> pointsOf(const PointArray& array, const char* name);
 py::array_t<double> arrayOf(const std::vector<Vec3d>& vectors);
 py::array_t<double> arrayOf(const std::vector<double>& numbers);
 
+/// Gives the interpreter's lock up as long as it lives, for a computation of ours. The interpreter's end
+/// waits until there is none: a thread that asked for the lock later would be ended in the midst of it.
+/// Throws RuntimeError in the threads that go on after that.
+class Unlocked {
+ public:
+  Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  /// Counts the computations; it goes when the lock is there again.
+  struct Count {
+    Count();
+    ~Count();
+    Count(const Count&) = delete;
+    Count& operator=(const Count&) = delete;
+  };
+  Count count_;
+  py::gil_scoped_release release_;
+};
+/// Throws RuntimeError when the interpreter has come to its end and this is another thread than ends it.
+void refuseAtTheEnd();
+
 /// Throws ValueError unless `threads` is in [0, 256].
 int checkedThreads(int threads);
 

@@ -19,6 +19,14 @@ namespace migiwa::python {
 
 namespace {
 
+/// Throws in a process that was forked from `process`: the threads of a simulation are not in it.
+void refuseAfterFork(pid_t process) {
+  if (getpid() != process)
+    throw std::runtime_error(
+        "expected a simulation of this process, found one from before a fork, whose threads are not here; "
+        "make it after the fork");
+}
+
 /// Rows of three floats, of which copies are made.
 py::array_t<float> copyOf(const std::vector<Float4>& vectors, std::size_t count) {
   py::array_t<float> array({static_cast<py::ssize_t>(count), py::ssize_t{3}});
@@ -31,7 +39,7 @@ py::array_t<float> copyOf(const std::vector<Float4>& vectors, std::size_t count)
 }
 
 /// The callback gets arrays of its own, so that nothing it keeps or does to them reaches memory of a step.
-class VelocityCallback final : public Effect {
+class VelocityCallback final : public EffectOf<VelocityCallback> {
  public:
   VelocityCallback(py::function callback, std::shared_ptr<CallbackFailure> failure)
       : callback_(new py::function(std::move(callback)),
@@ -41,9 +49,7 @@ class VelocityCallback final : public Effect {
                   }),
         failure_(std::move(failure)) {}
 
-  void describe(FieldVisitor&) override {}
-  void describe(FieldWriter&) const override {}
-  std::unique_ptr<Effect> clone() const override { return std::make_unique<VelocityCallback>(*this); }
+  static void fields(auto&, auto&) {}
   EffectStages stages() const override { return {.velocity = true}; }
 
   void changeVelocities(StepState& state, std::span<EffectBuffer>) const override {
@@ -54,6 +60,10 @@ class VelocityCallback final : public Effect {
     } catch (...) {
       failure_->thrown = std::current_exception();
     }
+    if (getpid() == process_) return;
+    // The rest of the step would wait for threads that are not in this process.
+    if (failure_->thrown) std::rethrow_exception(std::exchange(failure_->thrown, nullptr));
+    refuseAfterFork(process_);
   }
 
  private:
@@ -78,6 +88,7 @@ class VelocityCallback final : public Effect {
 
   std::shared_ptr<py::function> callback_;
   std::shared_ptr<CallbackFailure> failure_;
+  pid_t process_ = getpid();
 };
 
 }  // namespace
@@ -100,7 +111,7 @@ class HeldSimulation::Busy {
 
 HeldSimulation::HeldSimulation(const Scene& scene, int threads) : process_(getpid()) {
   checkedThreads(threads);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   requireSteppable(scene.boundary, scene.file);
   simulation_ = std::make_unique<Simulation>(scene, threads);
 }
@@ -118,12 +129,11 @@ HeldSimulation::~HeldSimulation() {
 Simulation& HeldSimulation::use() const {
   if (simulation_ == nullptr)
     throw std::runtime_error("expected an open simulation, found one that was closed");
-  if (getpid() != process_)
-    throw std::runtime_error(
-        "expected a simulation of this process, found one from before a fork, whose threads are not here; "
-        "make it after "
-        "the fork");
-  if (busy_)
+  refuseAfterFork(process_);
+  // Between two frames of a run it belongs to the callback: the run goes on when that is over, whatever
+  // others do meanwhile.
+  const bool others = calledBack_ != std::thread::id() && calledBack_ != std::this_thread::get_id();
+  if (busy_ || others)
     throw std::runtime_error(
         "expected a simulation at rest, found one that is stepping, perhaps in another thread");
   return *simulation_;
@@ -154,12 +164,13 @@ void HeldSimulation::step(long frames) {
   if (frames < 0)
     throw py::value_error("expected a number of frames from 0 on, found " + std::to_string(frames));
   for (long k = 0; k < frames; ++k) {
+    refuseAtTheEnd();
     Simulation& simulation = use();
     if (simulation.stopped()) raiseTrouble();
     detachViews();
     {
       const Busy busy(*this);
-      const py::gil_scoped_release release;
+      const Unlocked unlocked;
       simulation.advanceFrame();
     }
     if (failure_->thrown) std::rethrow_exception(std::exchange(failure_->thrown, nullptr));
@@ -187,7 +198,7 @@ void HeldSimulation::runUntil(double until, const py::object& eachFrame) {
   detachViews();
   {
     const Busy busy(*this);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     using Clock = std::chrono::steady_clock;
     Clock::time_point looked = Clock::now();
     const bool calls = !eachFrame.is_none();
@@ -210,12 +221,14 @@ void HeldSimulation::runUntil(double until, const py::object& eachFrame) {
 bool HeldSimulation::afterFrame(const py::object& eachFrame, std::exception_ptr& failure) {
   bool goOn = true;
   try {
+    refuseAtTheEnd();
     if (failure_->thrown) std::rethrow_exception(std::exchange(failure_->thrown, nullptr));
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!eachFrame.is_none()) {
-      running_ = true;
+      calledBack_ = std::this_thread::get_id();
       busy_ = false;
       const py::object result = eachFrame();
+      refuseAfterFork(process_);
       goOn = !(py::isinstance<py::bool_>(result) && !result.cast<bool>());
     }
   } catch (...) {
@@ -223,13 +236,13 @@ bool HeldSimulation::afterFrame(const py::object& eachFrame, std::exception_ptr&
     goOn = false;
   }
   busy_ = true;
-  running_ = false;
+  calledBack_ = {};
   detachViews();
   return goOn;
 }
 
 void HeldSimulation::refuseInRun() const {
-  if (running_)
+  if (calledBack_ != std::thread::id())
     throw std::runtime_error("expected the end of a run before the next step, found a callback of it");
 }
 
@@ -297,7 +310,7 @@ void HeldSimulation::apply(const Scene& scene) {
   settings.effects.insert(settings.effects.end(), callbacks_.begin(), callbacks_.end());
   detachViews();
   const Busy busy(*this);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   simulation.apply(settings);
 }
 
@@ -309,6 +322,23 @@ void HeldSimulation::addVelocityCallback(py::function callback) {
   detachViews();
   simulation.apply(settings);
   callbacks_.push_back(std::move(effect));
+}
+
+SurfaceMesh HeldSimulation::surface(double resolution, int smoothing, double smallest) const {
+  const auto check = [](const char* name, double value, const Range& range) {
+    if (!range.contains(value))
+      throw py::value_error(std::string("expected ") + name + " " + range.text() + ", found " +
+                            std::to_string(value));
+  };
+  check("a resolution", resolution, Range::closed(0.1, 2));
+  check("smoothing", smoothing, Range::closed(0, 100));
+  check("the smallest piece", smallest, Range::closed(0, 1e9));
+  const Simulation& simulation = use();
+  const Busy busy(*this);
+  const Unlocked unlocked;
+  ThreadPool pool(simulation.threads());
+  SceneSurface surface(simulation.scene(), {resolution, smoothing, smallest}, pool);
+  return surface.mesh(simulation.view().positions, simulation.view().velocities, simulation.time());
 }
 
 std::string HeldSimulation::report() const {
@@ -327,14 +357,14 @@ std::string HeldSimulation::report() const {
 void HeldSimulation::save(const std::string& file) {
   Simulation& simulation = use();
   const Busy busy(*this);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   writeSave(file, simulation, sampler_, {});
 }
 
 void HeldSimulation::resume(const std::string& file) {
   Simulation& simulation = use();
   const Busy busy(*this);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   readSave(file, simulation, sampler_);
 }
 

@@ -1,10 +1,15 @@
 // The Python module migiwa._core: what is wrong becomes exceptions that name the place, as the program says
 // it.
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <string>
+#include <thread>
 
 #include <migiwa/version.h>
+#include <pthread.h>
 
 #include "core/base/messages.h"
 #include "python/bindings/bindings.h"
@@ -12,6 +17,21 @@
 namespace migiwa::python {
 
 namespace {
+
+std::atomic<int> computations = 0;
+std::atomic<std::thread::id> ending;  ///< the thread that ends the interpreter; none before
+
+/// Of the interpreter, for atexit: waits for computations of other threads. Not for ever, for a callback of
+/// theirs may wait for this thread.
+void waitForComputations() {
+  ending = std::this_thread::get_id();
+  const py::gil_scoped_release release;
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kLongest{60};
+  constexpr std::chrono::milliseconds kPause{1};
+  for (const Clock::time_point start = Clock::now(); computations > 0 && Clock::now() - start < kLongest;)
+    std::this_thread::sleep_for(kPause);
+}
 
 /// Raises the class of that name of the module: its one argument is the list of (place, message).
 void raiseInputError(const InputError& error) {
@@ -38,6 +58,21 @@ void translate(std::exception_ptr thrown) {
 }
 
 }  // namespace
+
+Unlocked::Count::Count() {
+  refuseAtTheEnd();
+  ++computations;
+}
+Unlocked::Count::~Count() {
+  --computations;
+}
+Unlocked::Unlocked() = default;
+
+void refuseAtTheEnd() {
+  const std::thread::id by = ending;
+  if (by != std::thread::id() && by != std::this_thread::get_id())
+    throw std::runtime_error("expected an interpreter that goes on, found one that is ending");
+}
 
 std::vector<Vec3d> pointsOf(const PointArray& array, const char* name) {
   if (array.ndim() != 2 || array.shape(1) != 3)
@@ -78,6 +113,9 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The compiled part of migiwa.";
   module.attr("__version__") = MIGIWA_VERSION;
   py::register_exception_translator(translate);
+  // Computations of other threads are none of a process that was forked.
+  pthread_atfork(nullptr, nullptr, [] { computations = 0; });
+  py::module_::import("atexit").attr("register")(py::cpp_function(waitForComputations));
   bindScene(module);
   bindSlim(module);
   bindSimulation(module);

@@ -31,7 +31,7 @@ py::tuple gammaAt(const Scene& scene, const PointArray& array, int threads) {
   std::vector<double> gamma, distance;
   std::vector<Vec3d> gradient;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     for (const WallAnswer& answer : WallQuery(scene, threads).answers(points)) {
       gamma.push_back(answer.gamma);
       gradient.push_back(answer.gradient);
@@ -47,7 +47,7 @@ py::tuple distancesAt(const Scene& scene, const PointArray& array) {
   std::vector<double> distances;
   std::vector<Vec3d> normals;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const Boundary boundary(wallsFor(scene.surfaces, static_cast<float>(scene.supportRadius())));
     for (const Vec3d& point : points) {
       Vec3f normal;
@@ -71,14 +71,14 @@ void bindScene(py::module_& module) {
       .def_static(
           "_read",
           [](const std::string& file, const Changes& changes) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             return readScene(std::filesystem::path(file), overridesOf(changes));
           },
           py::arg("file"), py::arg("changes"))
       .def_static(
           "_parse",
           [](const std::string& text, const std::string& name, const Changes& changes) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             return parseScene(text, std::filesystem::path(name), overridesOf(changes));
           },
           py::arg("text"), py::arg("name"), py::arg("changes"))

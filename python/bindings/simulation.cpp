@@ -1,18 +1,12 @@
 #include "python/bindings/simulation.h"
 
-#include <cstdio>
+#include <algorithm>
 
 #include <pybind11/stl.h>
 
 namespace migiwa::python {
 
 namespace {
-
-std::string hashText(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
 
 /// (kind, step, detail) of each.
 py::list troubleOf(const RunStatistics& statistics) {
@@ -32,6 +26,24 @@ py::array_t<std::uint32_t> neighboursOf(const HeldSimulation& simulation) {
   return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(counts.size()), counts.data());
 }
 
+/// Rows of three.
+template <class Value, class Triples>
+py::array_t<Value> rowsOf(const Triples& triples) {
+  py::array_t<Value> array({static_cast<py::ssize_t>(triples.size()), py::ssize_t{3}});
+  Value* row = array.mutable_data();
+  for (const auto& triple : triples) row = std::copy_n(triple.data(), 3, row);
+  return array;
+}
+
+/// Positions, triangles, normals, velocities, wet.
+py::tuple surfaceOf(const HeldSimulation& held, double resolution, int smoothing, double smallest) {
+  const SurfaceMesh mesh = held.surface(resolution, smoothing, smallest);
+  py::array_t<bool> wet(static_cast<py::ssize_t>(mesh.wet.size()));
+  std::ranges::copy(mesh.wet, wet.mutable_data());
+  return py::make_tuple(rowsOf<float>(mesh.positions), rowsOf<std::uint32_t>(mesh.triangles),
+                        rowsOf<float>(mesh.normals), rowsOf<float>(mesh.velocities), wet);
+}
+
 }  // namespace
 
 void bindSimulation(py::module_& module) {
@@ -41,6 +53,7 @@ void bindSimulation(py::module_& module) {
       .def("_run_until", &HeldSimulation::runUntil)
       .def("_apply", &HeldSimulation::apply)
       .def("_on_velocities", &HeldSimulation::addVelocityCallback)
+      .def("_surface", surfaceOf)
       .def("_report", &HeldSimulation::report)
       .def("_save", &HeldSimulation::save)
       .def("_resume", &HeldSimulation::resume)
@@ -65,7 +78,7 @@ void bindSimulation(py::module_& module) {
       .def_property_readonly("threads", [](const HeldSimulation& held) { return held.use().threads(); })
       .def_property_readonly("stopped", [](const HeldSimulation& held) { return held.use().stopped(); })
       .def_property_readonly("state_hash",
-                             [](const HeldSimulation& held) { return hashText(held.use().stateHash()); })
+                             [](const HeldSimulation& held) { return hexDigits(held.use().stateHash()); })
       .def_property_readonly("_trouble",
                              [](const HeldSimulation& held) { return troubleOf(held.use().statistics()); })
       .def("__len__", [](const HeldSimulation& held) { return held.use().view().positions.size(); });

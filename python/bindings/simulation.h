@@ -5,9 +5,11 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <migiwa/simulation.h>
+#include <migiwa/surface.h>
 #include <sys/types.h>
 
 #include "python/bindings/bindings.h"
@@ -23,8 +25,8 @@ struct CallbackFailure {
 NamedEffect velocityCallback(py::function callback, std::shared_ptr<CallbackFailure> failure);
 
 /// Guards what Python may do with a simulation. Its functions are called with the interpreter's lock, and
-/// give it up while they compute. They throw where the simulation is closed, is at work in another thread or
-/// belongs to another process.
+/// give it up while they compute. They throw where the simulation is closed, is at work in another thread,
+/// callbacks of its run included, or belongs to another process.
 class HeldSimulation {
  public:
   HeldSimulation(const Scene& scene, int threads);
@@ -49,6 +51,7 @@ class HeldSimulation {
   void apply(const Scene& scene);
   void addVelocityCallback(py::function callback);
 
+  SurfaceMesh surface(double resolution, int smoothing, double smallest) const;
   std::string report() const;
   void save(const std::string& file);
   void resume(const std::string& file);
@@ -80,7 +83,8 @@ class HeldSimulation {
   std::vector<NamedEffect> callbacks_;
   pid_t process_;
   mutable bool busy_ = false;
-  bool running_ = false;  ///< in a callback between two frames of a run
+  /// The thread that is in a callback between two frames of a run; none elsewhere.
+  std::thread::id calledBack_;
 };
 
 }  // namespace migiwa::python

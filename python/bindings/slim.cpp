@@ -58,7 +58,7 @@ std::unique_ptr<SlimFitted> fitFile(const std::string& file, int degree, double 
                                     int threads) {
   const SlimFitOptions options = optionsOf(degree, tolerance, nodes);
   checkedThreads(threads);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   return fitted(importShape(file), options, threads);
 }
 
@@ -70,7 +70,7 @@ std::unique_ptr<SlimFitted> fitPointArrays(const PointArray& positions, const Po
   if (places.size() != directions.size())
     throw py::value_error("expected as many normals as points, found " + std::to_string(directions.size()) +
                           " and " + std::to_string(places.size()));
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   ImportedShape shape;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double length = directions[i].norm();
@@ -87,7 +87,7 @@ py::tuple distancesOf(const SlimFitted& surface, const PointArray& array) {
   std::vector<double> distances;
   std::vector<Vec3d> normals;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     for (const Vec3d& point : points) {
       const SlimModel::Nearest nearest = surface.model().nearest(point.cast<float>());
       distances.push_back(static_cast<double>(nearest.distance));
@@ -129,12 +129,12 @@ void bindSlim(py::module_& module) {
       .def_static("_fit_points", fitPointArrays)
       .def_static("_read",
                   [](const std::string& file) {
-                    const py::gil_scoped_release release;
+                    const Unlocked unlocked;
                     return std::make_unique<SlimFitted>(readSlimFile(file));
                   })
       .def("_save",
            [](const SlimFitted& surface, const std::string& file) {
-             const py::gil_scoped_release release;
+             const Unlocked unlocked;
              writeTextFile(file, slimFileText(surface.data()));
            })
       .def("_distances", distancesOf)

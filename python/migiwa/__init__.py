@@ -12,7 +12,7 @@ All quantities are in SI units.
 from ._core import __version__
 from ._errors import Fault, InputError, MissingError, NumericalError
 from ._scene import Distances, Scene, Walls, box, plane, schema, sphere
-from ._simulation import Simulation, Trouble
+from ._simulation import Simulation, Surface, Trouble
 from ._slim import SlimSurface, SlimValues
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "Simulation",
     "SlimSurface",
     "SlimValues",
+    "Surface",
     "Trouble",
     "Walls",
     "__version__",

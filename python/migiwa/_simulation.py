@@ -25,6 +25,21 @@ class Trouble(NamedTuple):
     detail: str
 
 
+class Surface(NamedTuple):
+    """A closed mesh around the liquid, of V vertices and T triangles."""
+
+    positions: Floats32
+    """Of the vertices (m) relative to ``scene.origin``, shape (V, 3)."""
+    triangles: NDArray[numpy.uint32]
+    """Three vertices each, counter-clockwise seen from outside the liquid, shape (T, 3)."""
+    normals: Floats32
+    """At the vertices, out of the liquid, shape (V, 3)."""
+    velocities: Floats32
+    """Of the liquid at the vertices (m/s), shape (V, 3)."""
+    wet: NDArray[numpy.bool_]
+    """Whether the liquid touches a wall at a triangle, shape (T,)."""
+
+
 class Simulation:
     """A scene in motion. The same scene gives the same state for any number of threads, and as the program does.
 
@@ -213,6 +228,14 @@ class Simulation:
             raise MissingError(f"pictures need the part of the package that draws them: {error}") from None
         scene = self.scene.changed({f"/view/{key}": value for key, value in (view or {}).items()})
         return _render.render(self._simulation._capsule(), scene._scene, width, height, panels)
+
+    def surface(self, *, resolution: float = 0.5, smoothing: int = 10, smallest: float = 0) -> Surface:
+        """The surface of the liquid as ``migiwa surface`` makes it; without particles a mesh of nothing.
+
+        ``resolution``: cells of the grid over the particle spacing, 0.1 to 2. ``smoothing``: passes over the free
+        surface, 0 to 100. ``smallest``: pieces of less than so many particles' volume are left out.
+        """
+        return Surface(*self._simulation._surface(resolution, smoothing, smallest))
 
     def save(self, file: Path) -> None:
         """Saves the state, to go on with ``resume`` or ``migiwa simulate --resume``."""

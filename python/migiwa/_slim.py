@@ -117,6 +117,9 @@ class SlimSurface:
     def __len__(self) -> int:
         return len(self._surface)
 
+    def __repr__(self) -> str:
+        return f"<migiwa.SlimSurface of {len(self)} balls of degree {self.degree}>"
+
 
 def _wanted(tolerance: Optional[float], nodes: Optional[int]) -> tuple[float, int]:
     if tolerance is not None and not tolerance > 0:

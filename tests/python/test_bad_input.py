@@ -1,8 +1,12 @@
 """What must end in an exception: wrong arguments, use at the wrong time, failing callbacks, threads, forks."""
 
+import copy
 import math
 import os
+import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -44,6 +48,11 @@ class Arguments(unittest.TestCase):
             lambda: simulation.set(3),
             lambda: simulation.save(3),
             lambda: simulation.is_current([1, 2]),
+            lambda: simulation.surface(resolution="fine"),
+            lambda: simulation.surface(smoothing=1.5),
+            lambda: copy.deepcopy(simulation),
+            lambda: pickle.dumps(simulation),
+            lambda: pickle.dumps(tank()),
             lambda: migiwa._core.Simulation(None, 1),
             lambda: migiwa._core.Scene(),
             lambda: migiwa.SlimSurface(),
@@ -61,6 +70,10 @@ class Arguments(unittest.TestCase):
             lambda: simulation.run_until(-1),
             lambda: simulation.advance(-1),
             lambda: simulation.run_until(1e300),
+            lambda: simulation.surface(resolution=0.01),
+            lambda: simulation.surface(resolution=math.nan),
+            lambda: simulation.surface(smoothing=-1),
+            lambda: simulation.surface(smallest=-1),
         ):
             self.assertRaises(ValueError, call)
         self.assertRaises(migiwa.InputError, migiwa.Simulation, tank(particle_spacing=0.1).changed(
@@ -89,7 +102,9 @@ class Times(unittest.TestCase):
                 getattr(simulation, name)
         for call in (simulation.step, simulation.run_until, simulation.report, lambda: len(simulation),
                      lambda: simulation.set({"/solver/max_iterations": 3}), lambda: simulation.save("x.save"),
-                     lambda: simulation.on_velocities(print), lambda: simulation.is_current(np.zeros(3))):
+                     lambda: simulation.on_velocities(print), lambda: simulation.is_current(np.zeros(3)),
+                     simulation.surface, simulation.watch_pressure, simulation.measures,
+                     lambda: simulation.write_particles("x.ply")):
             self.assertRaises(RuntimeError, call)
         with migiwa.Simulation(tank()) as other:
             other.step()
@@ -242,6 +257,105 @@ class Threads(unittest.TestCase):
         # The lock is given up while it computes.
         self.assertGreater(failures, 0)
         self.assertEqual(simulation.frame, 400)
+
+    def test_another_thread_between_two_frames(self):
+        """While a callback of a run waits, others must not begin what the next step would disturb."""
+        plain, simulation = migiwa.Simulation(tank(), threads=1), migiwa.Simulation(tank(), threads=2)
+        plain.run_until(0.1)
+        failures, done = [], threading.Event()
+
+        def meddle():
+            while not done.is_set():
+                for call in (simulation.report, simulation.surface, simulation.close, lambda: simulation.positions,
+                             lambda: simulation.set({"/solver/max_iterations": 1}), lambda: simulation.save(os.devnull)):
+                    try:
+                        call()
+                    except RuntimeError as error:
+                        failures.append(str(error))
+
+        thread = threading.Thread(target=meddle)
+
+        def each_frame():
+            if simulation.frame == 1:
+                thread.start()
+            time.sleep(0.002)
+            self.assertEqual(len(simulation.positions), 125)
+            if simulation.frame == plain.frame:
+                done.set()
+                thread.join()
+
+        simulation.run_until(0.1, each_frame)
+        self.assertGreater(len(failures), 6 * plain.frame)
+        self.assertEqual(simulation.state_hash, plain.state_hash)
+
+    def test_a_fork_within_a_callback(self):
+        def end_of(run):
+            """What becomes of a child that comes back from a callback into the step of its parent."""
+            parent, children = os.getpid(), []
+
+            def fork():
+                if not children:
+                    children.append(os.fork())
+
+            try:
+                run(fork)
+                code = 1
+            except RuntimeError as error:
+                code = 0 if "fork" in str(error) else 2
+            except BaseException:
+                code = 3
+            if os.getpid() != parent:
+                os._exit(code)
+            self.assertEqual(code, 1)
+            return os.waitstatus_to_exitcode(os.waitpid(children[0], 0)[1])
+
+        simulation = migiwa.Simulation(tank(), threads=2)
+        self.assertEqual(end_of(lambda fork: simulation.run_until(0.05, fork)), 0)
+        self.assertEqual(end_of(lambda fork: simulation.run_until(0.1, lambda: fork() or simulation.frame < 5)), 0)
+        other = migiwa.Simulation(tank(), threads=2)
+        forks = []
+        other.on_velocities(lambda velocities, positions, dt: forks.pop()() if forks else None)
+        self.assertEqual(end_of(lambda fork: (forks.append(fork), other.step())), 0)
+        self.assertEqual(end_of(lambda fork: (forks.append(fork), other.run_until(0.05))), 0)
+        child = []
+
+        def leave(velocities, positions, dt):
+            if not child:
+                child.append(os.fork())
+                if child[0] == 0:
+                    sys.exit(7)
+
+        last = migiwa.Simulation(tank(), threads=2)
+        last.on_velocities(leave)
+        try:
+            last.step()
+        except SystemExit as left:
+            os._exit(left.code)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child[0], 0)[1]), 7)
+
+    def test_the_interpreter_ends_while_a_thread_computes(self):
+        """Python ends daemon threads that ask for its lock: not within a step, whose memory would be left as it is."""
+        start = """
+import os, sys, threading, time, migiwa
+scene = migiwa.Scene(particle_spacing=0.1, fluid=[migiwa.box([0, 0, 0], [0.5, 0.5, 0.5])])
+simulation = migiwa.Simulation(scene, threads=2)
+threading.excepthook = lambda failure: None
+threading.Thread(target=lambda: {}, daemon=True).start()
+time.sleep(0.3)
+{}
+"""
+        force = "simulation.on_velocities(lambda velocities, positions, dt: None) or "
+        for work in ("simulation.run_until(1e4)", "simulation.run_until(1e4, lambda: None)", "simulation.step(10**7)",
+                     force + "simulation.run_until(1e4)", "[scene.gamma([[0, 0, 0]]) for _ in range(10**7)]"):
+            for end in ("", "sys.exit(0)"):
+                with self.subTest(work=work, end=end):
+                    ended = subprocess.run([sys.executable, "-c", start.format(work, end)], capture_output=True, text=True,
+                                           timeout=60)
+                    self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        forked = start.format("simulation.run_until(1e4)", "child = os.fork()\nsys.exit(child and os.waitpid(child, 0)[1])")
+        began = time.monotonic()
+        self.assertEqual(subprocess.run([sys.executable, "-c", forked], capture_output=True).returncode, 0)
+        self.assertLess(time.monotonic() - began, 30)
 
     def test_a_fork(self):
         simulation = migiwa.Simulation(tank(), threads=2)

@@ -155,6 +155,42 @@ class Views(unittest.TestCase):
         self.assertEqual(len(simulation.pressure), 0)
 
 
+class Surfaces(unittest.TestCase):
+    def test_the_mesh_is_the_programs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene_file = pathlib.Path(folder) / "tank.json"
+            scene_file.write_text(json.dumps(tank().to_dict()))
+            subprocess.run([PROGRAM, "surface", scene_file, "--every", "0.1", "--until", "0.1", "--out", folder, "--quiet"],
+                           check=True, capture_output=True)
+            known = pathlib.Path(folder, "tank_surface_000001.ply").read_bytes()
+            simulation = migiwa.Simulation(migiwa.Scene.read(scene_file))
+            simulation.run_until(0.1)
+        surface = simulation.surface()
+        header, content = known.split(b"end_header\n", 1)
+        self.assertIn(b"element vertex %d\n" % len(surface.positions), header)
+        self.assertIn(b"element face %d\n" % len(surface.triangles), header)
+        vertices = np.frombuffer(content, "<f4", 9 * len(surface.positions)).reshape(-1, 9)
+        np.testing.assert_array_equal(vertices, np.hstack([surface.positions, surface.normals, surface.velocities]))
+        self.assertEqual(surface.wet.dtype, bool)
+        self.assertTrue(surface.wet.any() and not surface.wet.all())
+
+    def test_it_is_closed_around_the_waters_volume(self):
+        simulation = migiwa.Simulation(drop())
+        surface = simulation.surface(resolution=0.25)
+        edges = surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        there, back = ({tuple(edge) for edge in part.tolist()} for part in (edges, edges[:, ::-1]))
+        self.assertEqual(there, back)
+        self.assertEqual(len(there), len(edges))
+        self.assertFalse(surface.wet.any())
+        corners = surface.positions[surface.triangles].astype(float)
+        volume = np.einsum("ni,ni->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+        self.assertAlmostEqual(volume, 27 * 0.1**3, delta=0.2 * 27 * 0.1**3)
+
+    def test_without_water_it_is_empty(self):
+        surface = migiwa.Simulation(migiwa.Scene(particle_spacing=0.1)).surface()
+        self.assertEqual((surface.positions.shape, surface.triangles.shape, len(surface.wet)), ((0, 3), (0, 3), 0))
+
+
 class Settings(unittest.TestCase):
     def test_changes_take_effect(self):
         simulation = migiwa.Simulation(tank())

@@ -26,6 +26,7 @@ class Slim(unittest.TestCase):
         self.assertTrue(surface.closed)
         self.assertEqual(surface.degree, 2)
         self.assertEqual(len(surface), len(surface.radii))
+        self.assertIn(str(len(surface)), repr(surface))
         self.assertLess(abs(len(surface) - 300), 30)
         np.testing.assert_allclose(np.linalg.norm(surface.centres, axis=1), 1, atol=0.01)
         rng = np.random.default_rng(2)
