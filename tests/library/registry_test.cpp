@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <migiwa/effects.h>
+#include <migiwa/gamma.h>
 #include <migiwa/scene.h>
 #include <migiwa/simulation.h>
 #include <migiwa/walls.h>
@@ -27,6 +28,20 @@ class Ball final : public Described<Ball, DistanceSurface> {
   double radius_ = 0.5;
 };
 
+/// A round vessel about a point.
+class Vessel final : public Described<Vessel, DistanceSurface> {
+ public:
+  static void fields(auto& visitor, auto& self) { visitor.place("center", self.center_, {"m", "Centre."}); }
+  double signedDistance(const Vec3d& p) const override { return kRadius - (p - center_).norm(); }
+  Bounds bounds() const override {
+    return {center_ - Vec3d::Constant(kRadius), center_ + Vec3d::Constant(kRadius)};
+  }
+  static constexpr double kRadius = 0.5;
+
+ private:
+  Vec3d center_ = Vec3d::Zero();
+};
+
 class Push final : public EffectOf<Push> {
  public:
   static void fields(auto& visitor, auto& self) {
@@ -45,6 +60,7 @@ class Push final : public EffectOf<Push> {
 void registerOurs() {
   static const bool once = [] {
     registerSurface<Ball>("ball_of_ours");
+    registerSurface<Vessel>("vessel_of_ours");
     registerEffect<Push>("push_of_ours");
     return true;
   }();
@@ -86,6 +102,31 @@ TEST(OutsideTheLibrary, AShapeHoldsWaterOff) {
   EXPECT_GT(least, 0.5F + 0.05F - 0.002F);
   EXPECT_LT(least, 0.56F);
   EXPECT_FALSE(simulation.stopped());
+}
+
+TEST(OutsideTheLibrary, AVesselHoldsWaterInAsTheLibrarysDoes) {
+  registerOurs();
+  // So far from zero that floats would not hold the distances: places are relative to the scene's origin.
+  const auto vessel = [](const std::string& shape) {
+    return sceneOf(R"("fluid": [ { "shape": "sphere", "center": [1e6, 0, 0], "radius": 0.3,
+        "velocity": [0, -2, 0] } ], "boundary": { "surfaces": [ { "center": [1e6, 0, 0], )" +
+                   shape + " } ] }");
+  };
+  const Scene ours = vessel(R"("shape": "vessel_of_ours")");
+  const Scene known = vessel(R"("shape": "sphere", "fluid": "inside", "radius": 0.5)");
+  const std::vector<Vec3d> points{{1e6, 0, 0}, {1e6, 0.45, 0}, {1e6 + 0.3, 0.3, 0.2}, {1e6, 0, -0.5}};
+  const auto found = WallQuery(ours, 1).answers(points), right = WallQuery(known, 1).answers(points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    EXPECT_NEAR(found[k].distance, right[k].distance, 1e-6) << k;
+    EXPECT_NEAR(found[k].gamma, right[k].gamma, 1e-3) << k;
+  }
+  Simulation simulation(ours, 1);
+  while (simulation.time() < 0.3) simulation.advanceFrame();
+  const Vec3d middle = Vec3d(1e6, 0, 0) - ours.origin;
+  double farthest = 0;
+  for (const Float4& p : simulation.view().positions)
+    farthest = std::max(farthest, (p.xyz().cast<double>() - middle).norm());
+  EXPECT_NEAR(farthest, 0.5 - 0.05, 1e-3);
 }
 
 TEST(OutsideTheLibrary, RaysGoAheadByDistances) {
