@@ -197,7 +197,7 @@ void SphereSource::fill(double spacing, std::vector<Vec3d>& out) const {
       for (std::int64_t i = 0; i < n; ++i) {
         const Vec3d offset(first + double(i) * spacing, first + double(j) * spacing,
                            first + double(k) * spacing);
-        if (offset.squaredNorm() <= radius_ * radius_) out.push_back(center_ + offset);
+        if (offset.squaredNorm() <= radius_ * radius_) out.emplace_back(center_ + offset);
       }
     }
   }

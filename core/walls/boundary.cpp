@@ -187,8 +187,8 @@ std::vector<std::shared_ptr<const Surface>> wallsFor(
     const std::vector<std::shared_ptr<const Surface>>& surfaces, float supportRadius) {
   std::vector<std::shared_ptr<const Surface>> walls;
   for (const auto& surface : surfaces) {
-    std::shared_ptr<const Surface> wall = surface->forSupport(supportRadius);
-    walls.push_back(wall != nullptr ? std::move(wall) : surface);
+    const std::shared_ptr<const Surface> wall = surface->forSupport(supportRadius);
+    walls.push_back(wall != nullptr ? wall : surface);
   }
   return walls;
 }
