@@ -56,6 +56,7 @@ TEST(Interface, HeadOnItReflectsTheSquareOfTheRatio) {
 }
 
 TEST(Interface, WaterAtGlassIsOne) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   // 60 degrees in the water: 1.8 % as one interface does; with air between, it would be all of the light.
   const testing::WavyTank tank(40, 0);
   const Stage stage(tank.content());
@@ -72,6 +73,7 @@ TEST(Interface, WaterAtGlassIsOne) {
 }
 
 TEST(Interface, TheStageTellsTheSidesOfTheWater) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   const testing::WavyTank tank(40, 0);
   const Stage stage(tank.content());
   const Event down = stage.next({0.4F, 0.7F, 0.3F}, slanted(0.3), {Medium::air});

@@ -55,6 +55,7 @@ std::pair<double, double> meanRadiance(const Stage& stage, int count, const std:
 }
 
 TEST(Paths, InAFurnaceNothingIsSeen) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   WavyTank tank;
   tank.scene.surfaces.push_back(std::make_shared<Sphere>(Vec3d(0.6, 0.6, 0.3), 0.12, Sphere::Fluid::outside));
   tank.scene.surfaces.push_back(
@@ -90,6 +91,7 @@ TEST(Paths, AGlassBallKeepsAllLight) {
 }
 
 TEST(Paths, ASlabOfWaterTakesAsBeerAndLambertSay) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   // Head on, with what goes to and fro between its faces: T = (1 - R)^2 A / (1 - R^2 A^2), and what comes
   // back is R + R (1 - R)^2 A^2 / (1 - R^2 A^2).
   WavyTank tank(10, 0);
@@ -122,6 +124,7 @@ TEST(Paths, ASlabOfWaterTakesAsBeerAndLambertSay) {
 
 /// Whether each end of a stretch has the medium that the shape of the water puts there.
 TEST(Paths, LabelsAgreeWithTheShape) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   const WavyTank tank(160);
   const Stage stage(tank.content());
   RandomSequence random(4);
@@ -170,9 +173,11 @@ void expectNoLeak(int count) {
 }
 
 TEST(Paths, NoneLeaks) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   expectNoLeak(100000);
 }
 TEST(Paths, NoneOfMillionsLeaks) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   expectNoLeak(10000000);
 }
 

@@ -18,6 +18,7 @@ Exposure smallPicture(const Stage& stage, const Camera& camera, int samples, int
 }
 
 TEST(Still, IsTheSameForAnyNumberOfThreads) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   const testing::WavyTank tank;
   const Stage stage(tank.content(Surround::studio, true));
   ThreadPool one(1), two(2);
@@ -29,6 +30,7 @@ TEST(Still, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Still, DependsOnItsSeedAlone) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   const testing::WavyTank tank;
   const Stage stage(tank.content(Surround::studio, true));
   const Camera& camera = tank.scene.view.camera;
@@ -38,6 +40,7 @@ TEST(Still, DependsOnItsSeedAlone) {
 }
 
 TEST(Still, InAFurnaceIsWhite) {
+  if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   const testing::WavyTank tank;
   const Stage stage(tank.content());
   ThreadPool pool(2);
