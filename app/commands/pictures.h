@@ -21,7 +21,8 @@ namespace migiwa {
 inline constexpr int kSheetGutter = 6;  ///< between the cells of a sheet (pixels)
 
 /// The first is the one that is taken where none is named.
-inline constexpr std::array<std::string_view, 2> kRenderStyles{"particles", "raytraced"};
+enum class RenderStyle { particles, water, rayTraced };
+inline constexpr std::array<std::string_view, 3> kRenderStyles{"particles", "water", "raytraced"};
 
 inline constexpr long kFewestSamples = 2, kMostSamples = 65536;  ///< of a pixel
 
@@ -55,7 +56,7 @@ struct RenderJob {
   std::optional<FilmJob> film;
   int width = 0, height = 0;  ///< of one picture or cell (pixels)
   std::filesystem::path folder;
-  bool rayTraced = false;
+  RenderStyle style = RenderStyle::particles;
   int samples = 64;  ///< of each pixel of a ray-traced picture
   std::uint32_t seed = 0;
 };

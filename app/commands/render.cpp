@@ -21,6 +21,7 @@
 #include "core/scene/json.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
+#include "core/simulation/scene_surface.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
@@ -43,6 +44,7 @@ PictureRecord pictureRecord(const FrameView& frame, const std::vector<Override>&
 struct PictureContext {
   std::string scene;     ///< the scene file as it was given
   std::string renderer;  ///< driver and version
+  std::string style;     ///< one of kRenderStyles
   bool panels = false;
   std::string colorField, colorUnit;
   std::array<double, 2> colorRange{0, 1};
@@ -66,17 +68,25 @@ namespace {
 class ViewerTaker final : public PictureTaker {
  public:
   ViewerTaker(const Scene& scene, const WallDrawing& walls, const ViewerOptions& options,
-              const RenderJob& job)
-      : viewer_(scene, walls, options), job_(job) {}
+              const RenderJob& job, int threads)
+      : viewer_(scene, walls, options), job_(job), pool_(threads) {
+    if (job.style == RenderStyle::water) surface_.emplace(scene, SurfaceOptions{}, pool_);
+  }
 
-  Image take(const Simulation&, const FrameView& frame) override {
-    return viewer_.takePicture(frame, RunStatus{}, job_.width, job_.height);
+  Image take(const Simulation& simulation, const FrameView& frame) override {
+    FrameView shown = frame;
+    if (surface_)
+      shown.water = std::make_shared<const SurfaceMesh>(
+          surface_->mesh(frame.positions, frame.velocities, simulation.time()));
+    return viewer_.takePicture(shown, RunStatus{}, job_.width, job_.height);
   }
   const Viewer& viewer() const { return viewer_; }
 
  private:
   Viewer viewer_;
   const RenderJob& job_;
+  ThreadPool pool_;
+  std::optional<SceneSurface> surface_;  ///< of water
 };
 
 /// What draws pictures of simulations.
@@ -85,7 +95,8 @@ class Drawing {
   Drawing(const RenderJob& job, const RenderOptions& options, const CommonOptions& common)
       : job_(job), options_(options), common_(common) {
     pictures_.scene = options_.scene;
-    if (job_.rayTraced) {
+    pictures_.style = kRenderStyles[static_cast<std::size_t>(job_.style)];
+    if (job_.style == RenderStyle::rayTraced) {
       pictures_.renderer = "ray traced";
       pictures_.samples = job_.samples;
       pictures_.seed = job_.seed;
@@ -97,10 +108,11 @@ class Drawing {
   }
 
   std::unique_ptr<PictureTaker> makeTaker(const Simulation& simulation, const RenderVariant& variant) {
-    if (job_.rayTraced) return makeStillTaker(job_, common_.threads);
-    const ViewerOptions shown{scaleFor(job_.width, job_.height), options_.panels, options_.timings,
-                              variant.note};
-    auto taker = std::make_unique<ViewerTaker>(simulation.scene(), simulation.walls(), shown, job_);
+    if (job_.style == RenderStyle::rayTraced) return makeStillTaker(job_, common_.threads);
+    ViewerOptions shown{scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note};
+    shown.water = job_.style == RenderStyle::water;
+    auto taker =
+        std::make_unique<ViewerTaker>(simulation.scene(), simulation.walls(), shown, job_, common_.threads);
     describe(taker->viewer(), simulation.scene().view.color);
     return taker;
   }
@@ -249,7 +261,7 @@ bool renderFilm(const RenderJob& job, Drawing& drawing) {
 
 int render(const RenderOptions& options, const CommonOptions& common) {
   const RenderJob job = checkedRenderJob(options, common);
-  if (job.rayTraced && !raysAvailable())
+  if (job.style == RenderStyle::rayTraced && !raysAvailable())
     throw MissingError(std::string("--style raytraced: ") + raysMissingAdvice());
   Drawing drawing(job, options, common);
   bool good = false;
@@ -282,10 +294,11 @@ double roundedTime(double seconds) {
 Json json(const PictureContext& context, const Image& image) {
   if (context.samples > 0) {
     return {{"scene", context.scene}, {"size", {image.width, image.height}},
-            {"style", "raytraced"},   {"samples", context.samples},
+            {"style", context.style}, {"samples", context.samples},
             {"seed", context.seed},   {"renderer", context.renderer}};
   }
   return {{"scene", context.scene},
+          {"style", context.style},
           {"size", {image.width, image.height}},
           {"panels", context.panels},
           {"color",

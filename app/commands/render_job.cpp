@@ -46,7 +46,8 @@ void requireStyle(const RenderOptions& options, RenderJob& job) {
     throw InputError("--style",
                      "expected one of " + quotedList(kRenderStyles) + ", found \"" + options.style + "\"");
   }
-  job.rayTraced = *style == "raytraced";
+  job.style = static_cast<RenderStyle>(style - kRenderStyles.begin());
+  const bool rayTraced = job.style == RenderStyle::rayTraced;
   job.samples = options.samples.value_or(job.samples);
   job.seed = static_cast<std::uint32_t>(options.seed.value_or(0));
   FaultCollector collect;
@@ -57,10 +58,10 @@ void requireStyle(const RenderOptions& options, RenderJob& job) {
             option, std::string("expected --style ") + other + " beside it, found --style " + options.style);
       });
   };
-  refuse(job.rayTraced && options.panels, "--ui", "particles");
-  refuse(job.rayTraced && options.timings, "--timings", "particles");
-  refuse(!job.rayTraced && options.samples.has_value(), "--samples", "raytraced");
-  refuse(!job.rayTraced && options.seed.has_value(), "--seed", "raytraced");
+  refuse(rayTraced && options.panels, "--ui", "particles or water");
+  refuse(rayTraced && options.timings, "--timings", "particles or water");
+  refuse(!rayTraced && options.samples.has_value(), "--samples", "raytraced");
+  refuse(!rayTraced && options.seed.has_value(), "--seed", "raytraced");
   collect.raise();
 }
 
@@ -228,8 +229,8 @@ std::vector<Option> renderOptions(RenderOptions& options) {
       {.name = "--style",
        .target = &options.style,
        .value = "STYLE",
-       .help = "particles: as in the window. raytraced: the water with its surface, and walls of glass "
-               "or matt material.",
+       .help = "particles: as in the window. water: the surface in place of the particles. raytraced: "
+               "light is followed through water and walls of glass or matt material.",
        .shownDefault = options.style},
       {.name = "--samples",
        .target = &options.samples,

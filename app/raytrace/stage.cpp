@@ -26,11 +26,6 @@ float smoothStep(float from, float to, float x) {
   return t * t * (3 - 2 * t);
 }
 
-/// What is lost on a metre where light that has gone `depth` keeps the share `color`.
-Vec3f lossOf(const Vec3d& color, double depth) {
-  return (-color.array().log() / depth).matrix().cast<float>();
-}
-
 }  // namespace
 
 Stage::Stage(const StageContent& content)
