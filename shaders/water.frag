@@ -3,7 +3,7 @@
 // Light that comes to the eye from a point of the water's surface: a part is reflected, the rest has come through the
 // water, refracted where it entered and where it left, from what is behind. A processor that draws pictures computes both
 // sides of every condition, so there are few, and powers are sums of roots.
-uniform vec4 loss;  // of light in water (1/m)
+uniform vec4 loss;  // of light in water (1/m); w: height of the ground, which has no depth (m)
 layout(binding = 2) uniform sampler2D exits;        // the layer of the surface through which light leaves
 layout(binding = 3) uniform sampler2D behind;       // what is behind the water
 layout(binding = 4) uniform sampler2D behindDepth;
@@ -98,8 +98,12 @@ vec3 waterColor(vec3 p, vec3 n) {
   vec3 onward = free ? refract(inWater, -exit.xyz, kIndex) : inWater;
   onward = dot(onward, onward) > 0.5 ? onward : reflect(inWater, exit.xyz);
 
-  // What is behind, where the ray comes to if that is as far as straight behind.
-  vec3 end = q + clamp(behindAt(own) + q.z, 0.0, -100.0 * q.z) * onward;
+  // What is behind, where the ray comes to if that is as far as straight behind, or else on the ground.
+  vec3 upwards = mat3(view) * up.xyz;
+  float height = dot(upwards, q) + dot(up.xyz, eye.xyz) - loss.w, falling = -dot(upwards, onward);
+  float further = clamp(behindAt(own) + q.z, 0.0, -100.0 * q.z);
+  if (falling > 1e-3) further = min(further, max(height, 0.0) / falling);
+  vec3 end = q + further * onward;
   vec2 pixel = end.z < -1e-3 ? pixelOf(end) : own;
   // What stands in front of the water is not behind it.
   pixel = behindAt(pixel) < -0.98 * q.z ? own : pixel;

@@ -103,8 +103,8 @@ class WaterPass {
   /// From now on draws this one.
   void set(const SurfaceMesh& mesh);
   /// Over what the target holds, which is what is behind the water. `loss`: of red, green and blue light in
-  /// water (1/m).
-  void draw(const RenderTarget& target, const Vec3f& loss);
+  /// water (1/m); the ground's height along the up axis (m).
+  void draw(const RenderTarget& target, const Vec3f& loss, float groundHeight);
 
  private:
   /// Faces to the air (false) or to walls.

@@ -171,7 +171,7 @@ void Renderer::drawWater(const FrameView& frame, const Shot& shot, const RenderT
     water_ = frame.water;
     waterPass_->set(*water_);
   }
-  waterPass_->draw(target, shot.waterLoss);
+  waterPass_->draw(target, shot.waterLoss, static_cast<float>(ground_.center.dot(ground_.up)));
 }
 
 std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at) {

@@ -198,7 +198,7 @@ void WaterPass::shade(const GlFramebuffer& into, const GlTexture& entries, const
   glDepthFunc(GL_LESS);
 }
 
-void WaterPass::draw(const RenderTarget& target, const Vec3f& loss) {
+void WaterPass::draw(const RenderTarget& target, const Vec3f& loss, float groundHeight) {
   if (freeIndices_ + wetIndices_ == 0) return;
   resize(target);
   glDepthMask(GL_TRUE);
@@ -206,7 +206,7 @@ void WaterPass::draw(const RenderTarget& target, const Vec3f& loss) {
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glBindVertexArray(layout_.name());
-  surface_.set("loss", loss.x(), loss.y(), loss.z(), 0.0F);
+  surface_.set("loss", loss.x(), loss.y(), loss.z(), groundHeight);
   target.copyScene(toOpaque_);
   drawLayer(toEntries_, GL_BACK, nullptr);
   drawLayer(toExits_, GL_FRONT, nullptr);
