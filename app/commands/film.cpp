@@ -31,7 +31,8 @@ std::string frameName(std::size_t number) {
 }
 
 std::vector<std::string> img2webpWords(double fps, std::size_t frames, const std::string& result) {
-  std::vector<std::string> words{"img2webp", "-loop", "0", "-lossy", "-q", "75", "-m", "4"};
+  std::vector<std::string> words{"img2webp", "-loop", "0",     "-lossy", "-q",    "85",
+                                 "-m",       "4",     "-kmin", "9",      "-kmax", "25"};
   // WebP counts whole milliseconds: frames are rounded to them each by itself, so that the film keeps time.
   long shown = 0, before = 0;
   for (std::size_t k = 0; k < frames; ++k) {
@@ -57,7 +58,7 @@ std::vector<std::string> ffmpegWords(double fps, const std::vector<std::string>&
 }
 
 std::vector<std::string> ffmpegWebpWords(double fps, std::size_t, const std::string& result) {
-  return ffmpegWords(fps, {"-c:v", "libwebp_anim", "-loop", "0", "-quality", "75"}, result);
+  return ffmpegWords(fps, {"-c:v", "libwebp_anim", "-loop", "0", "-quality", "85"}, result);
 }
 
 /// As players everywhere show it: halved colours, which take even sides.
