@@ -30,7 +30,7 @@ constexpr const char* kExitCodes =
     "  0  done\n"
     "  2  what was given is wrong: each fault with its place, what was expected and what was found\n"
     "  3  numerical trouble: a value that is not finite, a lost particle, a bound that was broken\n"
-    "  4  something is missing here: a display, EGL, gnuplot, memory, room for what is written\n";
+    "  4  something is missing here: a display, EGL, gnuplot, an encoder, memory, room for what is written\n";
 
 /// What every command line holds beside the command's own options.
 struct CommonWords {

@@ -21,16 +21,20 @@ namespace migiwa {
 inline constexpr int kSheetGutter = 6;  ///< between the cells of a sheet (pixels)
 
 /// The first is the one that is taken where none is named.
-inline constexpr std::array<std::string_view, 2> kRenderStyles{"particles", "raytraced"};
+enum class RenderStyle { particles, water, rayTraced };
+inline constexpr std::array<std::string_view, 3> kRenderStyles{"particles", "water", "raytraced"};
 
 inline constexpr long kFewestSamples = 2, kMostSamples = 65536;  ///< of a pixel
 
 struct RenderOptions {
-  std::string scene, out, times, size = "1280x720", compare, style{kRenderStyles[0]};
+  std::string scene, out, times, size = "1280x720", compare, style{kRenderStyles[0]}, film;
   bool panels = false, timings = false;
   std::optional<int> samples;
   std::optional<long> seed;
+  std::optional<double> fps, from, to;  ///< of a film
 };
+/// As `migiwa render --help` lists them.
+std::vector<Option> renderOptions(RenderOptions& options);
 
 /// One run of the scene: what is changed in it, and how that is called on the picture.
 struct RenderVariant {
@@ -39,12 +43,20 @@ struct RenderVariant {
   Scene scene;
 };
 
+/// A film: pictures at even distances of time.
+struct FilmJob {
+  std::filesystem::path file;
+  double fps = 30;  ///< frames a second
+  double from = 0;  ///< of the first frame (s)
+};
+
 struct RenderJob {
   std::vector<RenderVariant> variants;  ///< one, or those of --compare in the given order
-  std::vector<double> times;            ///< rising (s)
-  int width = 0, height = 0;            ///< of one picture or cell (pixels)
+  std::vector<double> times;            ///< rising (s); of a film its frames
+  std::optional<FilmJob> film;
+  int width = 0, height = 0;  ///< of one picture or cell (pixels)
   std::filesystem::path folder;
-  bool rayTraced = false;
+  RenderStyle style = RenderStyle::particles;
   int samples = 64;  ///< of each pixel of a ray-traced picture
   std::uint32_t seed = 0;
 };
@@ -61,5 +73,39 @@ class PictureTaker {
 
 /// By rays; `threads` as in CommonOptions. Throws MissingError where the program has none.
 std::unique_ptr<PictureTaker> makeStillTaker(const RenderJob& job, int threads);
+
+// Films. An encoder makes them of the frames, a PNG each, in a folder beside the film that is gone
+// afterwards.
+
+/// The endings that films can have, each once.
+std::vector<std::string_view> filmEndings();
+/// Of a film of that ending without its encoder: where its frames go instead.
+std::filesystem::path frameFolder(const std::filesystem::path& film);
+/// Whether a program that makes films of that ending is installed.
+bool filmEncoderInstalled(const std::filesystem::path& film);
+
+class FilmWriter {
+ public:
+  /// Throws InputError or OutputError where the film could not be written. Says what to install where there
+  /// is no encoder.
+  explicit FilmWriter(const FilmJob& job);
+  /// Leaves nothing of a film that was not finished.
+  ~FilmWriter();
+  FilmWriter(const FilmWriter&) = delete;
+  FilmWriter& operator=(const FilmWriter&) = delete;
+
+  void add(const Image& frame);
+  std::size_t frames() const { return frames_; }
+  /// Puts the film in its place. Throws MissingError where the encoder fails, or where there is none: then
+  /// the frames are in frameFolder().
+  void finish();
+
+ private:
+  void encode();
+
+  FilmJob job_;
+  std::filesystem::path work_;  ///< the folder of the frames; empty once it is gone
+  std::size_t frames_ = 0;
+};
 
 }  // namespace migiwa

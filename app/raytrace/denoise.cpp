@@ -47,7 +47,8 @@ std::array<std::array<Channel, 3>, 2> calibrated(const Exposure& exposure, Threa
     const Channel a = boxMean(apart, exposure.width, exposure.height, 5),
                   s = boxMean(scatter, exposure.width, exposure.height, 5);
     for (std::size_t i = 0; i < count; ++i) {
-      const float scale = s[i] > 0 ? std::min(a[i] / s[i], 2.0F) : 1.0F;
+      // Halves that are farther apart than their scatter says are so by chance.
+      const float scale = s[i] > 0 ? std::min(a[i] / s[i], 1.0F) : 1.0F;
       for (auto& half : variances) half[c][i] *= scale;
     }
   });

@@ -17,6 +17,11 @@ inline float refractiveIndex(Medium medium) {
   return medium == Medium::water ? 1.333F : medium == Medium::glass ? 1.5F : 1.0F;
 }
 
+/// What is lost on a metre (1/m) where light that has gone `depth` (m) keeps the share `color`.
+inline Vec3f lossOf(const Vec3d& color, double depth) {
+  return (-color.array().log() / depth).matrix().cast<float>();
+}
+
 /// What a smooth interface between two dielectrics does with light.
 struct Interface {
   float reflectance;  ///< of unpolarised light, in [0, 1]; 1 where none passes

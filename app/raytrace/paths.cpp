@@ -71,7 +71,10 @@ Ray depart(const Departure& from, const Stage& stage, int start) {
   } else {
     Place beyond = event.beyond;
     if (event.byLabel && other) beyond.medium = otherFluid(beyond.medium);
-    ray = throughInterface(from, beyond);
+    // A face of the water may be one too many, where its triangles pass through each other.
+    const bool passed = other && !event.byLabel && beyond.medium != Medium::glass;
+    ray = passed ? Ray{event.point, from.arrival.direction, from.arrival.place}
+                 : throughInterface(from, beyond);
   }
   constexpr float kOffsets[kStarts] = {1, 1, 30, 30};
   const float off = (event.meshed || start > 0 ? kOffsets[start] : 0.0F) * stage.offset();

@@ -11,9 +11,6 @@ namespace migiwa {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
-/// How far around a wall's point the water's faces to it are looked for, in particle spacings: into the fluid
-/// and, not to see through thin walls, into the wall.
-constexpr float kLabelReach = 0.6F, kLabelDepth = 0.06F;
 /// The ground fades into the horizon between these distances from the scene, in its extents.
 constexpr float kHazeFrom = 1.2F, kHazeTo = 7;
 
@@ -24,11 +21,6 @@ Vec3f linearColor(float r, float g, float b) {
 float smoothStep(float from, float to, float x) {
   const float t = std::clamp((x - from) / (to - from), 0.0F, 1.0F);
   return t * t * (3 - 2 * t);
-}
-
-/// What is lost on a metre where light that has gone `depth` keeps the share `color`.
-Vec3f lossOf(const Vec3d& color, double depth) {
-  return (-color.array().log() / depth).matrix().cast<float>();
 }
 
 }  // namespace
@@ -137,23 +129,34 @@ Place Stage::placeOf(const Vec3f& p) const {
   return {};
 }
 
-Medium Stage::fluidAt(std::size_t body, const Vec3f& p, const BodyHit& hit) const {
+/// What is before a wall: what is around the wall's point, if the wall is thought away. The water is closed
+/// behind its walls, so its winding number tells, counted on the way into the wall.
+Medium Stage::fluidAt(const Vec3f& p, const BodyHit& hit) const {
   if (hit.outside) return Medium::air;
-  const float reach = kLabelReach * spacing_;
-  return wet_[body].any(p + reach * hit.normal, -hit.normal, 0, reach + kLabelDepth * spacing_)
-             ? Medium::water
-             : Medium::air;
+  int winding = 0;
+  TriangleRays::Hit face;
+  for (float from = 0; water_.first(p, -hit.normal, from, kNone, face);
+       from = std::nextafter(face.distance, kNone))
+    winding += hit.normal.dot(face.normal) < 0 ? 1 : -1;
+  return winding > 0 ? Medium::water : Medium::air;
 }
 
 void Stage::meetWater(const Vec3f& origin, const Vec3f& direction, Medium medium, Event& event) const {
-  float from = 0;
+  int overlapping = 0;
   TriangleRays::Hit hit;
-  while (water_.first(origin, direction, from, event.distance, hit)) {
+  for (float from = 0; water_.first(origin, direction, from, event.distance, hit);
+       from = std::nextafter(hit.distance, kNone)) {
     const bool front = direction.dot(hit.normal) < 0;
     const Medium before = front ? Medium::air : Medium::water;
-    // The face that the ray starts from shows its other side.
-    if (before != medium && hit.distance < 4 * offset_) {
-      from = std::nextafter(hit.distance, kNone);
+    // Where triangles of the water pass through each other, at ragged contact lines, a face comes once too
+    // often on the way, and so does its counterpart.
+    if (before != medium) {
+      // But the face that the ray starts from shows its other side.
+      if (hit.distance >= 4 * offset_) ++overlapping;
+      continue;
+    }
+    if (overlapping > 0) {
+      --overlapping;
       continue;
     }
     const auto& [a, b, c] = triangles_[hit.triangle];
@@ -197,8 +200,7 @@ void Stage::meetBodies(const Vec3f& origin, const Vec3f& direction, Medium mediu
   event.point = origin + hit.distance * direction;
   event.normal = hit.normal;
   event.shading = hit.shading;
-  event.before =
-      hit.distance > water - offset_ ? medium : fluidAt(static_cast<std::size_t>(met), event.point, hit);
+  event.before = hit.distance > water - offset_ ? medium : fluidAt(event.point, hit);
   event.meshed = body.meshed();
   event.byLabel = false;
   if (body.glass()) {
@@ -248,7 +250,7 @@ Event Stage::inGlass(const Vec3f& origin, const Vec3f& direction, Place place) c
       if (static_cast<int>(k) != place.body && bodies_[k].contains(beyond)) other = static_cast<int>(k);
     if (other < 0) {
       event.kind = Event::Kind::interface;
-      event.beyond = {fluidAt(static_cast<std::size_t>(place.body), event.point, hit)};
+      event.beyond = {fluidAt(event.point, hit)};
       event.byLabel = true;
       return event;
     }

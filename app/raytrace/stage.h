@@ -90,10 +90,10 @@ class Stage {
   void setSurroundings(const StageContent& content);
   void addBodies(const StageContent& content);
   void addWater(const StageContent& content);
-  void addLabels(const SurfaceMesh& water, const std::vector<std::array<std::uint32_t, 3>>& wet);
   float distanceTo(std::size_t body, const Vec3f& p) const;
   bool showsWet(const Vec3f& p) const;
-  Medium fluidAt(std::size_t body, const Vec3f& p, const BodyHit& hit) const;
+  float depthBehind(const Vec3f& p) const;
+  Medium fluidAt(const Vec3f& p, const BodyHit& hit) const;
   Event inGlass(const Vec3f& origin, const Vec3f& direction, Place place) const;
   void meetWater(const Vec3f& origin, const Vec3f& direction, Medium medium, Event& event) const;
   void meetBodies(const Vec3f& origin, const Vec3f& direction, Medium medium, Event& event) const;
@@ -106,8 +106,7 @@ class Stage {
   std::vector<const Surface*> shown_;   ///< the walls of bodies_
   bool hasGround_ = false;
   Vec3f up_ = Vec3f::UnitY(), groundPoint_ = Vec3f::Zero();
-  TriangleRays water_;             ///< faces to the air, prolonged into the walls where they end there
-  std::vector<TriangleRays> wet_;  ///< of each body: the water's faces to it
+  TriangleRays water_;  ///< closed: faces to the air, and behind the walls what closes them
   std::vector<Vec3f> normals_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   float extent_ = 1, offset_ = 1e-5F, spacing_ = 0.05F;

@@ -1,20 +1,48 @@
-// The water of a picture: which of its faces are an interface to air, and how they end in the walls.
+// The water of a picture as one closed surface: its faces to the air, and behind the walls that it touches
+// what closes it there.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "app/raytrace/stage.h"
 
 namespace migiwa {
 namespace {
 
-/// How far free faces are prolonged into the wall that they end at, in particle spacings: farther than the
-/// water's faces to walls cut off a wall's edges.
-constexpr float kProlonged = 0.5F;
+/// How far behind the walls that it touches the water is closed, in particle spacings: farther than the
+/// water's faces to walls, and the drawn triangles of a wall, are off the wall itself.
+constexpr float kBehind = 0.5F;
 /// What is nearer to a wall touches it, in particle spacings.
 constexpr float kTouching = 0.05F;
+/// Faces to walls that turn by less than this at a vertex are one side of it (cosine).
+constexpr float kOneSide = 0.85F;
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Sides that the wall around a vertex has: unit normals, into the wall.
+struct WallSides {
+  std::array<Vec3f, 4> normals;
+  int count = 0;
+
+  void add(const Vec3f& normal) {
+    for (int k = 0; k < count; ++k)
+      if (normals[static_cast<std::size_t>(k)].dot(normal) > kOneSide) return;
+    if (count < static_cast<int>(normals.size())) normals[static_cast<std::size_t>(count++)] = normal;
+  }
+  /// A step that goes behind none of them by more than 1, and behind each by 1 where they are square to each
+  /// other.
+  Vec3f step() const {
+    Vec3f sum = Vec3f::Zero();
+    for (int k = 0; k < count; ++k) sum += normals[static_cast<std::size_t>(k)];
+    float most = 1;
+    for (int k = 0; k < count; ++k) most = std::max(most, sum.dot(normals[static_cast<std::size_t>(k)]));
+    return sum / most;
+  }
+};
 
 }  // namespace
 
@@ -35,71 +63,68 @@ bool Stage::showsWet(const Vec3f& p) const {
   return shown <= hidden;
 }
 
-/// The faces to each body, by the vertices that are on it.
-void Stage::addLabels(const SurfaceMesh& water, const std::vector<std::array<std::uint32_t, 3>>& wet) {
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    std::vector<std::uint8_t> touches(water.positions.size(), 2);
-    TriangleMesh faces{water.positions, {}};
-    for (const auto& corners : wet) {
-      const bool any = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t corner) {
-        if (touches[corner] > 1)
-          touches[corner] = distanceTo(body, water.positions[corner]) < kTouching * spacing_ ? 1 : 0;
-        return touches[corner] != 0;
-      });
-      if (any) faces.triangles.push_back(corners);
-    }
-    wet_.emplace_back(faces);
-  }
+/// How far behind the walls at p the water ends (m): within what they are made of.
+float Stage::depthBehind(const Vec3f& p) const {
+  float depth = kBehind * spacing_;
+  for (std::size_t body = 0; body < shown_.size(); ++body)
+    if (distanceTo(body, p) < depth)
+      depth = std::min({depth, 0.4F * shown_[body]->thinnestPart(), 0.9F * glassThickness()});
+  return depth;
 }
 
 void Stage::addWater(const StageContent& content) {
   const SurfaceMesh& water = *content.water;
-  TriangleMesh free{water.positions, {}};
-  std::vector<std::array<std::uint32_t, 3>> wet;
+  TriangleMesh closed{water.positions, {}};
+  std::vector<Corners> wet;
   for (std::size_t k = 0; k < water.triangles.size(); ++k) {
-    const auto& corners = water.triangles[k];
+    const Corners& corners = water.triangles[k];
     const Vec3f middle =
         (water.positions[corners[0]] + water.positions[corners[1]] + water.positions[corners[2]]) / 3;
-    (water.wet[k] != 0 && showsWet(middle) ? wet : free.triangles).push_back(corners);
+    (water.wet[k] != 0 && showsWet(middle) ? wet : closed.triangles).push_back(corners);
   }
-  addLabels(water, wet);
   normals_ = water.normals;
 
-  // Edges of wet faces; those that a free face has the other way round are where water, air and wall meet.
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> wetEdges;
-  for (const auto& corners : wet)
-    for (std::size_t k = 0; k < 3; ++k) wetEdges[{corners[k], corners[(k + 1) % 3]}] = true;
-  std::map<std::uint32_t, std::uint32_t> prolonged;
-  const auto below = [&](std::uint32_t vertex) {
-    const auto [place, isNew] =
-        prolonged.try_emplace(vertex, static_cast<std::uint32_t>(free.vertices.size()));
+  // The faces to walls go behind them, each vertex away from every side of the wall that is there.
+  std::map<std::uint32_t, WallSides> sides;
+  for (const auto& [a, b, c] : wet) {
+    const Vec3f normal =
+        (water.positions[b] - water.positions[a]).cross(water.positions[c] - water.positions[a]);
+    if (!(normal.norm() > 0)) continue;
+    for (const std::uint32_t corner : {a, b, c}) sides[corner].add(normal.normalized());
+  }
+  std::map<std::uint32_t, std::uint32_t> moved;
+  // A vertex behind the wall, and after it the same one for free faces that end there, which have other
+  // normals.
+  const auto behind = [&](std::uint32_t vertex) {
+    const auto [place, isNew] = moved.try_emplace(vertex, static_cast<std::uint32_t>(closed.vertices.size()));
     if (!isNew) return place->second;
-    const Vec3f& p = water.positions[vertex];
-    std::size_t nearest = 0;
-    for (std::size_t body = 1; body < bodies_.size(); ++body)
-      if (distanceTo(body, p) < distanceTo(nearest, p)) nearest = body;
-    Vec3f normal = up_;
-    float depth = kProlonged * spacing_;
-    if (nearest < shown_.size()) {
-      shown_[nearest]->distance(p, normal);
-      depth = std::min({depth, 0.4F * shown_[nearest]->thinnestPart(), 0.9F * glassThickness()});
-    }
-    free.vertices.emplace_back(p - depth * normal);
+    const Vec3f p = water.positions[vertex], step = sides[vertex].step();
+    closed.vertices.insert(closed.vertices.end(), 2, p + depthBehind(p) * step);
+    normals_.push_back(step.norm() > 0 ? Vec3f(step.normalized()) : water.normals[vertex]);
     normals_.push_back(water.normals[vertex]);
     return place->second;
   };
-  const std::size_t count = free.triangles.size();
+
+  // Where water, air and wall meet, the free faces' edges are joined to those behind the wall.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> wetEdges;
+  for (const Corners& corners : wet)
+    for (std::size_t k = 0; k < 3; ++k) wetEdges[{corners[k], corners[(k + 1) % 3]}] = true;
+  const std::size_t count = closed.triangles.size();
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t side = 0; side < 3; ++side) {
-      const std::uint32_t a = free.triangles[k][side], b = free.triangles[k][(side + 1) % 3];
+      const std::uint32_t a = closed.triangles[k][side], b = closed.triangles[k][(side + 1) % 3];
       if (!wetEdges.contains({b, a})) continue;
-      const std::uint32_t c = below(a), d = below(b);
-      free.triangles.push_back({b, a, c});
-      free.triangles.push_back({b, c, d});
+      const std::uint32_t c = behind(a) + 1, d = behind(b) + 1;
+      closed.triangles.push_back({b, a, c});
+      closed.triangles.push_back({b, c, d});
     }
   }
-  triangles_ = free.triangles;
-  water_ = TriangleRays(free);
+  for (const auto& [a, b, c] : wet) {
+    const std::uint32_t i = behind(a), j = behind(b), k = behind(c);
+    closed.triangles.push_back({i, j, k});
+  }
+  triangles_ = closed.triangles;
+  water_ = TriangleRays(closed);
 }
 
 }  // namespace migiwa

@@ -100,9 +100,17 @@ void RenderTarget::beginScene() const {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void RenderTarget::beginOverlay() const {
-  glBlitNamedFramebuffer(scene_.name(), result_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
+void RenderTarget::copyScene(const GlFramebuffer& to) const {
+  glBlitNamedFramebuffer(scene_.name(), to.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                          GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
+void RenderTarget::continueScene() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, scene_.name());
+}
+
+void RenderTarget::beginOverlay() const {
+  copyScene(result_);
   glBindFramebuffer(GL_FRAMEBUFFER, result_.name());
 }
 

@@ -53,6 +53,10 @@ class RenderTarget {
 
   /// Binds the multisampled buffer and clears it.
   void beginScene() const;
+  /// Copies what it holds so far, resolved, with its depth (32-bit) to a framebuffer of the same size.
+  void copyScene(const GlFramebuffer& to) const;
+  /// Binds it again.
+  void continueScene() const;
   /// Resolves it and binds the result.
   void beginOverlay() const;
   /// The finished picture, opaque.

@@ -94,6 +94,41 @@ class SurfacePass {
   GLsizei solidIndices_ = 0, vesselIndices_ = 0;  ///< in this order in indices_
 };
 
+// The liquid's surface as water: it refracts what is behind it, takes light by the way through it and mirrors
+// the sky. A ray meets at most two bodies of water, one behind the other.
+
+class WaterPass {
+ public:
+  WaterPass();
+  /// From now on draws this one.
+  void set(const SurfaceMesh& mesh);
+  /// Over what the target holds, which is what is behind the water. `loss`: of red, green and blue light in
+  /// water (1/m); the ground's height along the up axis (m).
+  void draw(const RenderTarget& target, const Vec3f& loss, float groundHeight);
+
+ private:
+  /// Faces to the air (false) or to walls.
+  void drawFaces(const ShaderProgram& program, bool wet) const;
+  void drawLayer(const GlFramebuffer& into, GLenum culled, const GlTexture* before) const;
+  /// The colours of water that light enters and leaves through these layers.
+  void shade(const GlFramebuffer& into, const GlTexture& entries, const GlTexture& exits,
+             const GlTexture& behind) const;
+  void resize(const RenderTarget& target);
+
+  ShaderProgram layer_, surface_, cover_;
+  GlBuffer vertices_, indices_;
+  GlVertexArray layout_;
+  GLsizei freeIndices_ = 0, wetIndices_ = 0;  ///< in this order in indices_
+  int width_ = 0, height_ = 0;
+  /// What is behind the water, without and with the water that is seen through other water.
+  GlTexture opaque_, all_, depth_;
+  /// Where light leaves the water nearest to the eye for it, and comes from further inside; the same of the
+  /// water behind; the colours of the nearest.
+  GlTexture entries_, exits_, farEntries_, farExits_, colors_;
+  GlRenderbuffer entriesDepth_, exitsDepth_, farEntriesDepth_;
+  GlFramebuffer toOpaque_, toAll_, toEntries_, toExits_, toFarEntries_, toFarExits_, toColors_;
+};
+
 // The plane under the scene: where it lies and how far apart its grid lines are.
 
 struct Ground {

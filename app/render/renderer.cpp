@@ -123,7 +123,9 @@ void Renderer::drawSection(const Shot& shot, float width) {
   sectionPass_.draw(width, kSectionInk);
 }
 
-void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget& target) {
+void Renderer::draw(const FrameView& frame, const Shot& asked, const RenderTarget& target) {
+  Shot shot = asked;
+  if (frame.water) shot.clip.enabled = false;
   const FrameUniforms uniforms = makeUniforms(shot, ground_, target);
   glNamedBufferSubData(uniforms_.name(), 0, sizeof(uniforms), &uniforms);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_.name());
@@ -139,20 +141,37 @@ void Renderer::draw(const FrameView& frame, const Shot& shot, const RenderTarget
   collectSpheres(frame, shot);
   collectPatches(shot);
   const float radius = 0.5F * frame.info.spacing;
-  groundPass_.draw(spheres_, radius, shownPatches_, shot.camera.eye);
-  spherePass_.draw(spheres_, radius);
-  if (!shot.walls) return;
+  // Water lets most of the light through that particles keep off.
+  groundPass_.draw(spheres_, frame.water ? 0.3F * radius : radius, shownPatches_, shot.camera.eye);
+  if (!frame.water) spherePass_.draw(spheres_, radius);
   const float width = std::max(1.2F, static_cast<float>(target.height()) / 480);
-  if (shot.nodes) {
-    nodePass_.draw();
-  } else {
+  if (shot.walls && shot.nodes) nodePass_.draw();
+  if (shot.walls && !shot.nodes) {
     surfacePass_.drawOpaque();
     drawSection(shot, 1.4F * width);
   }
+  if (frame.water) {
+    if (shot.walls) drawLines(width);  // those behind the water, which are seen through it
+    drawWater(frame, shot, target);
+  }
+  if (!shot.walls) return;
+  drawLines(width);
+  if (!shot.nodes) surfacePass_.drawGlass();
+}
+
+void Renderer::drawLines(float width) const {
   linePass_.draw(width, kWallInk);
   mouthPass_.draw(width, kMouthInk);
   drainPass_.draw(width, kDrainInk);
-  if (!shot.nodes) surfacePass_.drawGlass();
+}
+
+void Renderer::drawWater(const FrameView& frame, const Shot& shot, const RenderTarget& target) {
+  if (!waterPass_) waterPass_.emplace();
+  if (frame.water != water_) {
+    water_ = frame.water;
+    waterPass_->set(*water_);
+  }
+  waterPass_->draw(target, shot.waterLoss, static_cast<float>(ground_.center.dot(ground_.up)));
 }
 
 std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at) {

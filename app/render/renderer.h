@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,15 +32,17 @@ struct Shot {
   ColorField color = ColorField::density;
   std::array<double, 2> colorRange{0, 1};
   bool walls = true;
-  bool nodes = false;  ///< the nodes of SLIM walls in place of their surfaces
-  Rect scene;          ///< the part of the target that shows the scene
+  bool nodes = false;               ///< the nodes of SLIM walls in place of their surfaces
+  Rect scene;                       ///< the part of the target that shows the scene
+  Vec3f waterLoss = Vec3f::Zero();  ///< of red, green and blue light in water (1/m)
 };
 
 class Renderer {
  public:
   Renderer(const Surroundings& surroundings, const ColorMap& colors);
 
-  /// Draws into the target's multisampled buffer, which beginScene() has bound.
+  /// Draws into the target's multisampled buffer, which beginScene() has bound. A frame that has the water's
+  /// surface shows it in place of the particles, whole where a clip plane would cut.
   void draw(const FrameView& frame, const Shot& shot, const RenderTarget& target);
 
   const Ground& ground() const { return ground_; }
@@ -50,6 +53,8 @@ class Renderer {
   void collectSpheres(const FrameView& frame, const Shot& shot);
   void collectPatches(const Shot& shot);
   void drawSection(const Shot& shot, float width);
+  void drawLines(float width) const;
+  void drawWater(const FrameView& frame, const Shot& shot, const RenderTarget& target);
 
   Ground ground_;
   std::vector<WallMesh> meshes_;
@@ -62,6 +67,8 @@ class Renderer {
   LinePass linePass_, sectionPass_, mouthPass_, drainPass_;
   GroundPass groundPass_;
   GlBuffer uniforms_;
+  std::optional<WaterPass> waterPass_;             ///< once water has been drawn
+  std::shared_ptr<const SurfaceMesh> water_;       ///< that waterPass_ shows
   std::shared_ptr<const WallDrawing> movedWalls_;  ///< that linePass_ shows; null: those of the start
   std::vector<float> values_;
   std::vector<Float4> spheres_, shownPatches_;

@@ -115,6 +115,9 @@ class SimulationThread {
   std::optional<Settings> takeRefusal();
   /// From the next frame on, frames have pressures, or none.
   void watchPressure(bool on);
+  /// Frames have the water's surface, the present one too, or none. Where there is no room for it, the status
+  /// says so.
+  void watchWater(bool on);
 
   // The state on disk, as `migiwa simulate --save` and `--resume` keep it (core/io/save_file.h). What became
   // of it is in the status; faults leave the simulation as it is.
@@ -158,6 +161,7 @@ class SimulationThread {
   void stop(std::string why);
   void advance(std::unique_lock<std::mutex>& lock);
   void publish(std::unique_lock<std::mutex>& lock);
+  std::shared_ptr<const SurfaceMesh> waterOf(const FrameView& frame);
 
   const int threads_;
   const Pace pace_;
@@ -165,6 +169,8 @@ class SimulationThread {
   std::unique_ptr<Simulation> simulation_;
   FrameSnapshot filling_;
   Clock::time_point due_{};
+  struct Water;
+  std::unique_ptr<Water> water_;
 
   const Scene scene_;
   const WallDrawing walls_;
@@ -185,6 +191,7 @@ class SimulationThread {
   int steps_ = 0;
   std::optional<Settings> settings_, refused_;
   bool watchPressure_;
+  bool watchWater_ = false, hasWater_ = false;  ///< it was asked for; the last frame has it
 
   std::thread thread_;
 };

@@ -4,6 +4,7 @@
 #include "app/session/session.h"
 #include "core/base/messages.h"
 #include "core/io/save_file.h"
+#include "core/simulation/scene_surface.h"
 
 namespace migiwa {
 namespace {
@@ -29,6 +30,27 @@ std::string noteOf(const char* done, const std::filesystem::path& file, double t
 }
 
 }  // namespace
+
+/// What makes the water's surface, and of what settings.
+struct SimulationThread::Water {
+  Water(const Scene& scene, int threads)
+      : pool(threads),
+        surface(scene, SurfaceOptions{}, pool),
+        kernel(scene.solver.kernel),
+        supportRadius(scene.supportRadius()),
+        method(scene.boundary.gammaMethod) {}
+
+  bool fits(const Scene& scene) const {
+    return kernel == scene.solver.kernel && supportRadius == scene.supportRadius() &&
+           method == scene.boundary.gammaMethod;
+  }
+
+  ThreadPool pool;
+  SceneSurface surface;
+  KernelType kernel;
+  double supportRadius;
+  int method;
+};
 
 SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
     : threads_(threads),
@@ -110,6 +132,12 @@ void SimulationThread::watchPressure(bool on) {
   watchPressure_ = on;
 }
 
+void SimulationThread::watchWater(bool on) {
+  const std::lock_guard lock(mutex_);
+  watchWater_ = on;
+  if (on && !hasWater_) wake_.notify_one();
+}
+
 void SimulationThread::saveState(std::filesystem::path file, std::vector<Override> overrides) {
   const std::lock_guard lock(mutex_);
   if (refuses("Save state", false)) return;
@@ -182,7 +210,7 @@ void SimulationThread::work() {
 bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   const auto asked = [this] {
     return quit_ || reset_ || settings_ || save_ || load_ || !captures_.empty() ||
-           (steps_ > 0 && mayAdvance());
+           (watchWater_ && !hasWater_) || (steps_ > 0 && mayAdvance());
   };
   while (!asked()) {
     if (!mayAdvance()) {
@@ -207,6 +235,7 @@ void SimulationThread::applyRequests(std::unique_lock<std::mutex>& lock) {
   applySettings(lock);
   if (save_) applySave(lock);
   if (load_) applyLoad(lock);
+  if (watchWater_ && !hasWater_) publish(lock);
   if (captures_.empty()) return;
   std::vector<std::promise<StateImage>> captures = std::exchange(captures_, {});
   lock.unlock();
@@ -301,11 +330,28 @@ void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
 }
 
 void SimulationThread::publish(std::unique_lock<std::mutex>& lock) {
+  hasWater_ = watchWater_;
+  const bool watchWater = watchWater_;
   lock.unlock();
-  filling_.assign(simulation_->drawnView());
+  FrameView view = simulation_->drawnView();
+  std::string fault;
+  try {
+    if (watchWater) view.water = waterOf(view);
+  } catch (const std::exception& error) {
+    fault = std::string("No water, particles instead: ") + error.what();
+  }
+  filling_.assign(view);
   lock.lock();
+  if (!fault.empty()) status_.refused = fault;
   std::swap(filling_, finished_);
   hasFrame_ = true;
+}
+
+std::shared_ptr<const SurfaceMesh> SimulationThread::waterOf(const FrameView& frame) {
+  const Scene& scene = simulation_->scene();
+  if (!water_ || !water_->fits(scene)) water_ = std::make_unique<Water>(scene, threads_);
+  return std::make_shared<const SurfaceMesh>(
+      water_->surface.mesh(frame.positions, frame.velocities, simulation_->time()));
 }
 
 }  // namespace migiwa

@@ -40,6 +40,7 @@ struct ViewState {
   bool walls = true;
   bool nodes = false;  ///< of SLIM walls, in place of their surfaces
   bool panels = true;
+  bool water = false;  ///< the fluid's surface in place of its particles
 };
 
 /// What the user asked for in one frame.

@@ -137,8 +137,13 @@ void solverPanel(PanelModel& model) {
 void viewPanel(PanelModel& model) {
   ViewState& view = model.view;
   rowLabel("Colour");
+  ImGui::BeginDisabled(view.water);
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 5.4F * ImGui::GetFontSize());
   int color = static_cast<int>(view.color);
   if (choice("##color", color, kColorFieldNames)) view.color = static_cast<ColorField>(color);
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::Checkbox("Water", &view.water);
 
   const auto along = [](Axis axis) { return static_cast<Eigen::Index>(axis); };
   rowLabel("Cut");

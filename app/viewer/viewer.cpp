@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "app/raytrace/optics.h"
 #include "app/render/projection.h"
 #include "app/session/ui_state.h"
 #include "core/base/messages.h"
@@ -52,7 +53,8 @@ Viewer::Viewer(const Scene& scene, WallDrawing walls, const ViewerOptions& optio
       bounds_(scene.bounds()),
       referenceSpeed_(referenceSpeed(scene)),
       settings_{scene.solver, scene.boundary, scene.effects},
-      view_{scene.view.camera, scene.view.clip, scene.view.color, true, scene.view.nodes, options.panels},
+      view_{scene.view.camera, scene.view.clip, scene.view.color, true,
+            scene.view.nodes,  options.panels,  options.water},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
       ui_(options.scale) {
   takeView();
@@ -101,12 +103,19 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   last_ = input;
 
   target_->beginScene();
+  const Look& look = scene_.view.look;
   const Shot shot{view_.camera, view_.clip,  view_.color, colorRange(view_.color),
-                  view_.walls,  view_.nodes, area};
-  renderer_.draw(frame, shot, *target_);
+                  view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
+  renderer_.draw(asShown(frame), shot, *target_);
   target_->beginOverlay();
   ui_.end(true);
   return commands;
+}
+
+FrameView Viewer::asShown(const FrameView& frame) const {
+  FrameView shown = frame;
+  if (!view_.water) shown.water = nullptr;
+  return shown;
 }
 
 Image Viewer::takePicture(const FrameView& view, const RunStatus& run, int width, int height) {
@@ -128,7 +137,8 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
   UiCommands commands;
   history_.add(frame.info.steps, frame.info.stages);
   ui_.caption(caption(frame, run), area);
-  ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
+  if (!asShown(frame).water)
+    ui_.legend(colorInfo(view_.color), colorRange(view_.color), options_.colors, area);
   const NodePass& nodes = renderer_.nodes();
   if (view_.walls && view_.nodes && !nodes.empty()) {
     Rect above = area;

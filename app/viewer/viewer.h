@@ -32,6 +32,7 @@ struct ViewerOptions {
   SceneEditor* editor = nullptr;
   /// Settings to be tried on a copy; null: not offered. Outlives the viewer.
   WhatIfModel* whatIf = nullptr;
+  bool water = false;  ///< ViewState::water to begin with
 };
 
 /// The scale that suits a picture of this size.
@@ -66,6 +67,8 @@ class Viewer {
 
  private:
   UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
+  /// With the water's surface only where it is to be seen.
+  FrameView asShown(const FrameView& frame) const;
   void moveCamera(const InputState& input, const Rect& area);
   void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;

@@ -108,6 +108,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
     if (options.drawn) options.drawn({shown, run, viewer});
     applyRequest(commands, viewer.settings(), *simulation);
     simulation->watchPressure(viewer.view().color == ColorField::pressure);
+    simulation->watchWater(viewer.view().water);
     keepState(commands, session, *simulation);
     applyRequest(editor, session, viewer.settings(), viewer.view());
     if (commands.savePicture && options.savePicture)

@@ -290,6 +290,7 @@ void FrameSnapshot::assign(const FrameView& view) {
   pressure.assign(view.pressure.begin(), view.pressure.end());
   neighbours.assign(view.neighbours.begin(), view.neighbours.end());
   walls = view.walls;
+  water = view.water;
 }
 
 ColorFieldInfo colorFieldInfo(ColorField field, double referenceSpeed, double restDensity) {

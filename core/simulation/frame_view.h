@@ -13,6 +13,7 @@
 #include "core/scene/scene.h"
 #include "core/simulation/statistics.h"
 #include "core/solver/state.h"
+#include "core/surface/mesh.h"
 #include "core/walls/surface.h"
 
 namespace migiwa {
@@ -51,6 +52,8 @@ struct FrameView {
   /// For pictures of walls that move: all walls as they are now. Null where all stand still, and
   /// where no picture is asked for.
   std::shared_ptr<const WallDrawing> walls{};
+  /// The water's surface, for pictures that show it; null: they show particles.
+  std::shared_ptr<const SurfaceMesh> water{};
 };
 
 /// A copy of a frame view that owns its data.
@@ -60,10 +63,11 @@ struct FrameSnapshot {
   std::vector<float> density, gamma, lambda, pressure;
   std::vector<std::uint32_t> neighbours;
   std::shared_ptr<const WallDrawing> walls;
+  std::shared_ptr<const SurfaceMesh> water;
 
   void assign(const FrameView& view);
   FrameView view() const {
-    return {info, positions, velocities, density, gamma, lambda, neighbours, pressure, {}, walls};
+    return {info, positions, velocities, density, gamma, lambda, neighbours, pressure, {}, walls, water};
   }
 };
 

@@ -8,6 +8,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/scene/scene_file.h"
+#include "core/simulation/scene_surface.h"
+#include "core/simulation/simulation.h"
 #include "core/slim/points.h"
 #include "tests/raytrace/stages.h"
 
@@ -179,6 +182,30 @@ TEST(Paths, NoneLeaks) {
 TEST(Paths, NoneOfMillionsLeaks) {
   if (!raysAvailable()) GTEST_SKIP() << raysMissingAdvice();
   expectNoLeak(10000000);
+}
+
+/// Water that lies in the bowl of scenes/bowl.json, whose drawn triangles are off the wall that the water's
+/// mesh ends at.
+TEST(Paths, NoneLeaksAtAWallThatIsDrawnByTriangles) {
+  const Scene scene =
+      readScene(std::filesystem::path(MIGIWA_SOURCE_DIR) / "scenes" / "bowl.json",
+                {Override::parse(R"(/fluid=[{"shape":"sphere","center":[0,-0.8,0],"radius":0.64}])")});
+  const Simulation simulation(scene);
+  ThreadPool pool(2);
+  SceneSurface surface(simulation.scene(), SurfaceOptions{}, pool);
+  const SurfaceMesh water = surface.mesh(simulation.view().positions, {}, 0);
+  const Stage stage({.scene = &simulation.scene(), .walls = &surface.boundary(), .water = &water});
+  RandomSequence random(7);
+  PathCounts counts;
+  for (int k = 0; k < 300000; ++k) {
+    const Vec3f way = anyDirection(random);
+    const Vec3f target =
+        static_cast<float>(0.9 * random.unit()) * anyDirection(random) - 0.6F * Vec3f::UnitY();
+    PixelSamples samples(8, static_cast<std::uint32_t>(k), 0, 1);
+    const Vec3f eye = target - 5 * way;
+    tracePath(stage, eye, way, stage.placeOf(eye), samples, counts);
+  }
+  EXPECT_EQ(counts.leaked, 0U) << counts.contradictions << " contradictions in " << counts.stretches;
 }
 
 }  // namespace

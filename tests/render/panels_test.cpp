@@ -49,6 +49,12 @@ class PanelsTest : public ::testing::Test {
   Viewer viewer_{smallScene(), {}, {1, true, true}};
 };
 
+TEST_F(PanelsTest, WaterIsABoxInTheRowOfTheColour) {
+  // Somewhere down the panels' column of such boxes.
+  for (float y = 250; y < 500 && !viewer_.view().water; y += 8) click(242, y);
+  EXPECT_TRUE(viewer_.view().water);
+}
+
 TEST_F(PanelsTest, PlayStepAndResetAreAskedForByTheirButtons) {
   EXPECT_TRUE(click(55, 40).play);
   EXPECT_TRUE(click(160, 40).step);

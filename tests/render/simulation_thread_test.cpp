@@ -42,6 +42,21 @@ TEST_F(SimulationThreadTest, ShowsTheStartAndWaits) {
   EXPECT_FALSE(simulation_.takeFrame(frame_)) << "nobody asked it to play";
 }
 
+TEST_F(SimulationThreadTest, WaterIsMadeWhenItIsAskedForAlsoOfAFrameThatIsThere) {
+  ASSERT_TRUE(simulation_.takeFrame(frame_));
+  EXPECT_EQ(frame_.water, nullptr);
+  simulation_.watchWater(true);
+  ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.water != nullptr; }));
+  EXPECT_EQ(frame_.info.time, 0);
+  EXPECT_FALSE(frame_.water->empty());
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_FALSE(simulation_.takeFrame(frame_)) << "it is made once";
+  simulation_.watchWater(false);
+  simulation_.step();
+  ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time > 0; }));
+  EXPECT_EQ(frame_.water, nullptr);
+}
+
 TEST_F(SimulationThreadTest, StepsAreExactlyAsManyAsAskedFor) {
   for (int i = 0; i < 5; ++i) simulation_.step();
   ASSERT_TRUE(waitFor(simulation_, frame_, [&] { return frame_.info.time > 0.0249; }));

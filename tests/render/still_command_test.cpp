@@ -79,7 +79,8 @@ TEST_F(StillCommand, NamesEveryFault) {
     EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
   };
-  refused({"--style", "painted"}, "--style: expected one of \"particles\", \"raytraced\", found \"painted\"");
+  refused({"--style", "painted"},
+          "--style: expected one of \"particles\", \"water\", \"raytraced\", found \"painted\"");
   refused({"--style", "raytraced", "--ui", "--timings"}, "--ui: expected --style particles");
   refused({"--style", "raytraced", "--ui", "--timings"}, "--timings: expected --style particles");
   refused({"--samples", "8"}, "--samples: expected --style raytraced");

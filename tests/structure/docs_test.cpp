@@ -197,11 +197,11 @@ Faults picturesNotShown(const std::vector<std::string>& pictures, const std::vec
 }
 
 /// Pictures that no command of `run` makes: it names them as a file, where a variable stands for any part but
-/// the first, or as what its functions single and compareSheet make.
+/// the first, or as what its functions single, compareSheet, film and rayTraced make.
 Faults picturesNotMade(const std::vector<std::string>& pictures, const std::string& run) {
   static const std::regex named(R"(([A-Za-z0-9_]+(?:\$[a-z_]+[A-Za-z0-9_]*)*)\.png)"),
       variable(R"(\$[a-z_]+)");
-  static const std::regex made(R"((?:single|compareSheet) ([A-Za-z0-9_]+) )");
+  static const std::regex made(R"((?:single|compareSheet|film|rayTraced) ([A-Za-z0-9_]+) )");
   std::vector<std::regex> names;
   for (std::sregex_iterator match(run.begin(), run.end(), named), end; match != end; ++match)
     names.emplace_back(std::regex_replace((*match)[1].str(), variable, "[a-z0-9_]+"));
@@ -384,7 +384,19 @@ TEST(Documents, ShowEveryScreenshot) {
   expectNone(picturesNotShown(screenshots(), documents()));
 }
 TEST(Documents, ShowWhatRunMakes) {
-  expectNone(picturesNotMade(screenshots(), readText(root() / "run").text));
+  expectNone(picturesNotMade(
+      screenshots(), readText(root() / "run").text + readText(root() / "docs" / "screenshots.sh").text));
+}
+TEST(Documents, ShowPicturesThatAreSmall) {
+  // As much as a repository is to carry of what ./run makes anew.
+  constexpr std::uintmax_t kMost = 6'000'000, kMostOfOne = 2'000'000;
+  std::uintmax_t all = 0;
+  for (const std::string& picture : screenshots()) {
+    const std::uintmax_t size = fs::file_size(root() / picture);
+    EXPECT_LE(size, kMostOfOne) << picture;
+    all += size;
+  }
+  EXPECT_LE(all, kMost);
 }
 TEST(Documents, NameCommandsOfRun) {
   expectNone(unknownCommands(documents(), readText(root() / "run").text));

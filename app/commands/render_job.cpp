@@ -1,0 +1,280 @@
+// What `migiwa render` was asked for, looked at and understood before anything is drawn or written.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "app/commands/command.h"
+#include "app/commands/pictures.h"
+#include "core/base/files.h"
+#include "core/base/messages.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_file.h"
+#include "core/simulation/simulation.h"
+
+namespace migiwa {
+
+namespace {
+
+constexpr double kBytesOfPixel = 12;  ///< of the sheet, and of what its file is made of
+
+std::string note(const Override& change) {
+  // How walls are handled stands on every picture anyway.
+  if (change.pointer == "/boundary/handling") return "";
+  return change.pointer.substr(change.pointer.rfind('/') + 1) + " = " + change.value;
+}
+
+void requireDistinctNames(const std::vector<double>& times) {
+  std::set<std::string> names;
+  for (const double time : times) {
+    const std::string name = formatNumber("%.3f", time);
+    if (!names.insert(name).second) {
+      throw InputError(
+          "--times",
+          "expected times that differ in their first three decimals, found two that are " + name + " s");
+    }
+  }
+}
+
+/// What an option is that the style has no use for.
+void requireStyle(const RenderOptions& options, RenderJob& job) {
+  const auto style = std::find(kRenderStyles.begin(), kRenderStyles.end(), options.style);
+  if (style == kRenderStyles.end()) {
+    throw InputError("--style",
+                     "expected one of " + quotedList(kRenderStyles) + ", found \"" + options.style + "\"");
+  }
+  job.style = static_cast<RenderStyle>(style - kRenderStyles.begin());
+  const bool rayTraced = job.style == RenderStyle::rayTraced;
+  job.samples = options.samples.value_or(job.samples);
+  job.seed = static_cast<std::uint32_t>(options.seed.value_or(0));
+  FaultCollector collect;
+  const auto refuse = [&](bool given, const char* option, const char* other) {
+    if (given)
+      collect([&] {
+        throw InputError(
+            option, std::string("expected --style ") + other + " beside it, found --style " + options.style);
+      });
+  };
+  refuse(rayTraced && options.panels, "--ui", "particles or water");
+  refuse(rayTraced && options.timings, "--timings", "particles or water");
+  refuse(!rayTraced && options.samples.has_value(), "--samples", "raytraced");
+  refuse(!rayTraced && options.seed.has_value(), "--seed", "raytraced");
+  collect.raise();
+}
+
+/// Where pictures or the film go.
+void requirePlace(const RenderOptions& options) {
+  FaultCollector collect;
+  const bool film = !options.film.empty();
+  const auto beside = [&](bool given, const char* option, const std::string& message) {
+    if (given) collect.add({option, message});
+  };
+  beside(film && !options.out.empty(), "--out", "expected it or --film, found both");
+  beside(!film && options.out.empty(), "--out",
+         "expected a folder for the pictures, or --film with a file, found neither");
+  beside(film && !options.times.empty(), "--times", "expected --from and --to beside --film, found --times");
+  beside(!film && options.fps.has_value(), "--fps", "expected --film beside it, found none");
+  beside(!film && options.from.has_value(), "--from", "expected --film beside it, found none");
+  beside(!film && options.to.has_value(), "--to", "expected --film beside it, found none");
+  collect.raise();
+}
+
+void requireFilmName(const std::filesystem::path& film) {
+  const std::vector<std::string_view> endings = filmEndings();
+  std::error_code ignored;
+  if (std::find(endings.begin(), endings.end(), film.extension().string()) == endings.end())
+    throw InputError("--film", "expected a file whose name ends in one of " + quotedList(endings) +
+                                   ", found \"" + film.string() + "\"");
+  const std::filesystem::path folder = frameFolder(film);
+  if (!filmEncoderInstalled(film) && std::filesystem::exists(folder, ignored))
+    throw InputError("--film", "expected no " + folder.string() +
+                                   " yet, for without an encoder the frames go there, found one");
+}
+
+/// Throws InputError unless `value` is one that an option can have.
+void requireNumber(const char* option, double value, const Range& range, const char* unit) {
+  if (range.contains(value)) return;
+  std::ostringstream text;
+  text << "expected a number " << range.text() << " (unit: " << unit << "), found " << value;
+  throw InputError(option, text.str());
+}
+
+/// The frames of a film that ends where it is told to, or else with the scene (s).
+std::vector<double> filmTimes(const FilmJob& film, double to) {
+  if (!(film.fps > 0) || !std::isfinite(film.from) || !std::isfinite(to)) return {};  // told already
+  constexpr double kMostFrames = 20000;
+  if (film.from > to) {
+    std::ostringstream text;
+    text << "expected a time at or before the end of the film, " << to << " s, found " << film.from << " s";
+    throw InputError("--from", text.str());
+  }
+  // What is a whole number of frames but for rounding is one.
+  const double steps = std::floor((to - film.from) * film.fps + 1e-6);
+  if (steps >= kMostFrames) {
+    std::ostringstream text;
+    text << "expected a film of at most " << kMostFrames << " frames, found " << steps + 1
+         << "; fewer --fps, or --from and --to nearer to each other, would do";
+    throw InputError("--film", text.str());
+  }
+  std::vector<double> times;
+  for (int k = 0; k <= static_cast<int>(steps); ++k) times.push_back(film.from + k / film.fps);
+  return times;
+}
+
+void requireFolderName(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
+    throw InputError("--out", "expected a folder, found the file " + folder.string());
+  }
+}
+
+/// Cells of a sheet are drawn into one picture: as large as other programs open it.
+void requireSheet(const RenderJob& job, std::size_t rows, std::size_t columns) {
+  constexpr double kLargestSheetSide = 32767;
+  const double width = static_cast<double>(columns) * (job.width + kSheetGutter),
+               height = static_cast<double>(rows) * (job.height + kSheetGutter);
+  if (width > kLargestSheetSide || height > kLargestSheetSide) {
+    std::ostringstream text;
+    text << "expected a sheet of at most " << kLargestSheetSide << " pixels a side, found " << columns
+         << " times of " << job.width << " and " << rows << " values of " << job.height
+         << " pixels; a smaller --size, or fewer of them, would do";
+    throw InputError("--compare", text.str());
+  }
+  requireMemory(kBytesOfPixel * width * height, "a sheet", "--compare");
+}
+
+}  // namespace
+
+RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& common) {
+  FaultCollector collect;
+  RenderJob job;
+  job.folder = options.out;
+  if (!options.times.empty()) {
+    collect([&] {
+      job.times = parseTimes(options.times, "--times");
+      requireDistinctNames(job.times);
+    });
+  }
+  collect([&] {
+    const auto [width, height] = parseSize(options.size, "--size");
+    job.width = width, job.height = height;
+  });
+  collect([&] { requirePlace(options); });
+  collect([&] { requireFolderName(job.folder); });
+  if (!options.film.empty()) {
+    job.film = {options.film, options.fps.value_or(FilmJob{}.fps), options.from.value_or(0)};
+    collect([&] { requireFilmName(job.film->file); });
+    collect([&] { requireNumber("--fps", job.film->fps, Range::positive(1000), "1/s"); });
+    collect([&] { requireNumber("--from", job.film->from, Range::closed(0, kLongestRun), "s"); });
+    collect([&] { requireNumber("--to", options.to.value_or(0), Range::closed(0, kLongestRun), "s"); });
+  }
+  collect([&] { requireStyle(options, job); });
+
+  const auto addVariant = [&](const std::vector<Override>& overrides, const std::string& itsNote) {
+    collect([&] {
+      Scene scene = readScene(options.scene, overrides);
+      requireSteppable(scene.boundary, scene.file);
+      job.variants.push_back({overrides, itsNote, std::move(scene)});
+      if (!job.times.empty()) requireReachable(job.variants.back().scene, job.times.back(), "--times");
+      if (options.to) requireReachable(job.variants.back().scene, *options.to, "--to");
+    });
+  };
+  if (options.compare.empty()) {
+    addVariant(common.overrides, "");
+  } else {
+    std::vector<Override> changes;
+    collect([&] { changes = parseVariants(options.compare, "--compare"); });
+    for (const Override& change : changes) {
+      std::vector<Override> overrides = common.overrides;
+      overrides.push_back(change);
+      addVariant(overrides, note(change));
+    }
+    const std::size_t columns = job.film ? 1 : options.times.empty() ? 3 : job.times.size();
+    collect([&] { requireSheet(job, changes.size(), columns); });
+    // Not even the option could be read: then the scene itself is still to be looked at.
+    if (changes.empty()) addVariant(common.overrides, "");
+  }
+  if (job.film && !job.variants.empty())
+    collect(
+        [&] { job.times = filmTimes(*job.film, options.to.value_or(job.variants.front().scene.duration)); });
+  collect.raise();
+
+  if (job.times.empty()) {
+    const double duration = job.variants.front().scene.duration;
+    job.times = {0, duration / 2, duration};
+  }
+  return job;
+}
+
+std::vector<Option> renderOptions(RenderOptions& options) {
+  const std::string film = "Films";
+  return {
+      {.name = "scene", .target = &options.scene, .value = "SCENE", .help = "Scene file.", .required = true},
+      {.name = "--out",
+       .target = &options.out,
+       .value = "DIR",
+       .help = "Folder for the pictures NAME_t0.500.png, each with a .json that says what it shows."},
+      {.name = "--times",
+       .target = &options.times,
+       .value = "S,S,...",
+       .help = "Simulated times in s, with commas between them; left out: start, middle and end."},
+      {.name = "--size",
+       .target = &options.size,
+       .value = "WIDTHxHEIGHT",
+       .help = "Width and height in pixels.",
+       .shownDefault = options.size},
+      {.name = "--style",
+       .target = &options.style,
+       .value = "STYLE",
+       .help = "particles: as in the window. water: the surface in place of the particles. raytraced: "
+               "light is followed through water and walls of glass or matt material.",
+       .shownDefault = options.style},
+      {.name = "--samples",
+       .target = &options.samples,
+       .value = "N",
+       .help = "Of each pixel of a ray-traced picture.",
+       .range = {{kFewestSamples, kMostSamples}},
+       .shownDefault = std::to_string(RenderJob{}.samples)},
+      {.name = "--seed",
+       .target = &options.seed,
+       .value = "N",
+       .help = "Of the random numbers of a ray-traced picture: the same one gives the same picture.",
+       .range = {{0, 4294967295}},
+       .shownDefault = "0"},
+      {.name = "--ui", .target = &options.panels, .help = "Draws the window's panels, too."},
+      {.name = "--timings",
+       .target = &options.timings,
+       .help = "Shows wall times; without it two runs give the same bytes."},
+      {.name = "--compare",
+       .target = &options.compare,
+       .value = "/POINTER=A,B,...",
+       .help = "Draws one sheet NAME_compare.png instead: a row for each value, a column for each time; "
+               "--size is that of a cell. In a film the rows run in step."},
+      {.name = "--film",
+       .target = &options.film,
+       .value = "FILE.webp|FILE.mp4",
+       .help = "Makes a film instead of pictures, with img2webp or ffmpeg.",
+       .group = film},
+      {.name = "--fps",
+       .target = &options.fps,
+       .value = "N",
+       .help = "Frames a second.",
+       .shownDefault = "30",
+       .group = film},
+      {.name = "--from",
+       .target = &options.from,
+       .value = "S",
+       .help = "Simulated time of the first frame, in s.",
+       .shownDefault = "0",
+       .group = film},
+      {.name = "--to",
+       .target = &options.to,
+       .value = "S",
+       .help = "Simulated time of the last frame, in s; left out: the scene's duration.",
+       .group = film}};
+}
+
+}  // namespace migiwa
