@@ -1,6 +1,13 @@
-// Two viscosities. XSPH (Schechter & Bridson 2012, Macklin & Mueller 2013) moves each velocity towards the
+// Three viscosities. XSPH (Schechter & Bridson 2012, Macklin & Mueller 2013) moves each velocity towards the
 // kernel-weighted mean of its neighbours', v_i += c sum_j (m/rho0) (v_j - v_i) W_ij: a smoothing by the step,
-// whose strength depends on the spacing and the time step. The kinematic one is the viscous force with the
+// whose strength depends on the spacing and the time step. Affine XSPH does so with what is left of the
+// difference when the part is taken off that is linear in space, the neighbours' affine motion:
+//
+//   v_i += c sum_j (m/rho0) (v_j - v_i - (L_i + L_j)/2 (x_j - x_i)) W_ij
+//   L_i = -(m/rho0) sum_j (v_i - v_j) grad W_ij^T B_i,   B_i the inverse moment
+//
+// so that it damps the noise of single particles and spares translation, rotation, shear and long waves. The
+// pairs are antisymmetric: momentum is conserved. The kinematic one is the viscous force with the
 // angular momentum conserving pair form of Monaghan (2005), v_i' = nu k/h^2 sum_j w_ij ((v_j - v_i) . e) e
 // along the unit vector e between the particles, made implicit in time (Weiler et al. 2018), so that it is
 // stable for any time step. Deviation: the rest density in place of rho_j makes the pairs symmetric, so
@@ -16,6 +23,23 @@
 #include <hwy/highway.h>
 
 #include "core/solver/pairs_simd-inl.h"
+
+#ifndef MIGIWA_VISCOSITY_TYPES
+#define MIGIWA_VISCOSITY_TYPES
+namespace migiwa {
+
+/// The rows of velocity gradients, a particle each, with the ghost's.
+struct AffineRows {
+  Float4 *x, *y, *z;
+};
+
+/// Sums over neighbours: the rows of (v_i - v_j) grad W^T, the moment's diagonal in w; the moment's rest.
+struct GradientSums {
+  Float4 x, y, z, rest;
+};
+
+}  // namespace migiwa
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
@@ -47,6 +71,103 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
         Float4(Vec3f(before[i].xyz() + scale * KernelVectors<Kernel>::kValue * sums.xyz()));
   };
   forPairs(positions, pairScale, begin, end, sumOf, use);
+}
+
+/// The rows of the velocity gradient L (1/s) of the particles; `before`: the velocities, with the ghost's.
+template <class Kernel>
+void gradientRange(StepState& state, const Float4* before, const AffineRows& rows, std::size_t begin,
+                   std::size_t end) {
+  using Pair = KernelVectors<PairKernel<Kernel>>;
+  const PairScale pairScale(state);
+  const Float4* const positions = state.current.data();
+  const float scale = -state.lattice.massRatio * Pair::kSlope * pairScale.inverseSquare;
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
+    const Float4 velocity = before[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
+    PairVector xx = hn::Zero(d), xy = hn::Zero(d), xz = hn::Zero(d), yx = hn::Zero(d), yy = hn::Zero(d);
+    PairVector yz = hn::Zero(d), zx = hn::Zero(d), zy = hn::Zero(d), zz = hn::Zero(d);
+    PairVector mxx = hn::Zero(d), myy = hn::Zero(d), mzz = hn::Zero(d);
+    PairVector mxy = hn::Zero(d), mxz = hn::Zero(d), myz = hn::Zero(d);
+    for (std::size_t k = 0; k < list.size(); k += kPairs) {
+      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const PairVector push = Pair::push(d, distances(d, pair.squared));
+      const Components others = loadComponents(before, &list[k]);
+      const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
+      const PairVector ux = hn::Sub(vx, others.x), uy = hn::Sub(vy, others.y), uz = hn::Sub(vz, others.z);
+      xx = hn::MulAdd(ux, x, xx), xy = hn::MulAdd(ux, y, xy), xz = hn::MulAdd(ux, z, xz);
+      yx = hn::MulAdd(uy, x, yx), yy = hn::MulAdd(uy, y, yy), yz = hn::MulAdd(uy, z, yz);
+      zx = hn::MulAdd(uz, x, zx), zy = hn::MulAdd(uz, y, zy), zz = hn::MulAdd(uz, z, zz);
+      mxx = hn::MulAdd(x, pair.x, mxx), myy = hn::MulAdd(y, pair.y, myy), mzz = hn::MulAdd(z, pair.z, mzz);
+      mxy = hn::MulAdd(x, pair.y, mxy), mxz = hn::MulAdd(x, pair.z, mxz), myz = hn::MulAdd(y, pair.z, myz);
+    }
+    return GradientSums{sumLanes(xx, xy, xz, mxx), sumLanes(yx, yy, yz, myy), sumLanes(zx, zy, zz, mzz),
+                        sumLanes(mxy, mxz, myz, hn::Zero(d))};
+  };
+  for (std::size_t i = begin; i < end; ++i) {
+    GradientSums sums = sumOf(PairCentre(positions[i], pairScale), i);
+    if (HWY_UNLIKELY(hasCoincident(sums.x)))
+      sums = sumOf(PartingCentre{PairCentre(positions[i], pairScale), pairScale, i}, i);
+    const InverseMoment inverse(scale * Vec3f(sums.x.w, sums.y.w, sums.z.w), scale * sums.rest.xyz());
+    // Of too few neighbours, in spray, nothing is known: plain XSPH.
+    rows.x[i] = Float4(Vec3f(scale * inverse.times(sums.x.xyz())));
+    rows.y[i] = Float4(Vec3f(scale * inverse.times(sums.y.xyz())));
+    rows.z[i] = Float4(Vec3f(scale * inverse.times(sums.z.xyz())));
+  }
+}
+
+void velocityGradientOfRange(StepState& state, const Float4* before, const AffineRows& rows,
+                             std::size_t begin, std::size_t end) {
+  withKernel(state.parameters.kernel,
+             [&](auto kernel) HWY_ATTR { gradientRange<decltype(kernel)>(state, before, rows, begin, end); });
+}
+
+/// L offset, a row of it: `own` the particle's, `rows` the neighbours'.
+HWY_INLINE PairVector affinePart(const Float4& own, const Components& row, const PairOffsets& pair) {
+  const Pairs d;
+  const PairVector x = hn::Mul(hn::Add(row.x, hn::Set(d, own.x)), pair.x);
+  const PairVector xy = hn::MulAdd(hn::Add(row.y, hn::Set(d, own.y)), pair.y, x);
+  return hn::Mul(hn::Set(d, 0.5F), hn::MulAdd(hn::Add(row.z, hn::Set(d, own.z)), pair.z, xy));
+}
+
+template <class Kernel>
+void smoothAffineRange(StepState& state, const Float4* before, const AffineRows& rows, float scale,
+                       std::size_t begin, std::size_t end) {
+  const PairScale pairScale(state);
+  const Float4* const positions = state.current.data();
+  const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
+    const Float4 velocity = before[i], rowX = rows.x[i], rowY = rows.y[i], rowZ = rows.z[i];
+    const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const Pairs d;
+    const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
+    PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+    for (std::size_t k = 0; k < list.size(); k += kPairs) {
+      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const PairVector shape = KernelVectors<Kernel>::shape(d, distances(d, pair.squared));
+      const Components others = loadComponents(before, &list[k]);
+      // An offset points from the neighbour to the particle.
+      const PairVector ax = affinePart(rowX, loadComponents(rows.x, &list[k]), pair);
+      const PairVector ay = affinePart(rowY, loadComponents(rows.y, &list[k]), pair);
+      const PairVector az = affinePart(rowZ, loadComponents(rows.z, &list[k]), pair);
+      x = hn::MulAdd(shape, hn::Add(hn::Sub(others.x, vx), ax), x);
+      y = hn::MulAdd(shape, hn::Add(hn::Sub(others.y, vy), ay), y);
+      z = hn::MulAdd(shape, hn::Add(hn::Sub(others.z, vz), az), z);
+    }
+    return sumLanes(x, y, z, hn::Zero(d));
+  };
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    state.particles.velocity[i] =
+        Float4(Vec3f(before[i].xyz() + scale * KernelVectors<Kernel>::kValue * sums.xyz()));
+  };
+  forPairs(positions, pairScale, begin, end, sumOf, use);
+}
+
+void smoothAffineOfRange(StepState& state, const Float4* before, const AffineRows& rows, float scale,
+                         std::size_t begin, std::size_t end) {
+  withKernel(state.parameters.kernel, [&](auto kernel) HWY_ATTR {
+    smoothAffineRange<decltype(kernel)>(state, before, rows, scale, begin, end);
+  });
 }
 
 void smoothVelocitiesOfRange(StepState& state, const Float4* before, float scale, std::size_t begin,
@@ -93,6 +214,8 @@ HWY_AFTER_NAMESPACE();
 namespace migiwa {
 
 HWY_EXPORT(smoothVelocitiesOfRange);
+HWY_EXPORT(velocityGradientOfRange);
+HWY_EXPORT(smoothAffineOfRange);
 HWY_EXPORT(shearOfRange);
 
 namespace {
@@ -177,15 +300,21 @@ class Viscosity final : public EffectOf<Viscosity> {
     visitor.number("xsph", self.xsph_, Range::closed(0, 1),
                    {"1", "Part of the velocity difference to the neighbours that a step takes away."});
     visitor.number(
+        "affine_xsph", self.affine_, Range::closed(0, 1),
+        {"1",
+         "The same of what the neighbours' affine motion leaves of the difference: it damps noise and "
+         "spares rotation, shear and waves. 0.3 goes with velocities by projection, xsph then being 0."});
+    visitor.number(
         "kinematic", self.kinematic_, Range::closed(0, 1e3),
         {"m^2/s", "Kinematic viscosity: 1e-6 is water, 1e-3 oil, 1e-2 honey. Set xsph to 0 for this alone."});
   }
 
-  EffectStages stages() const override { return {.velocity = xsph_ > 0 || kinematic_ > 0}; }
-  std::size_t buffers() const override { return kinematic_ > 0 ? 1 : 0; }
+  EffectStages stages() const override { return {.velocity = xsph_ > 0 || affine_ > 0 || kinematic_ > 0}; }
+  std::size_t buffers() const override { return affine_ > 0 ? 3 : kinematic_ > 0 ? 1 : 0; }
 
   void changeVelocities(StepState& state, std::span<EffectBuffer> buffers) const override {
     if (xsph_ > 0) smooth(state);
+    if (affine_ > 0) smoothAffine(state, buffers);
     if (kinematic_ > 0) {
       // A linear shear is resisted by nu if k sum_j w q^2 = 30 over neighbours in all directions alike. Those
       // of a lattice stand in for those of a flowing fluid, which resist by so much less.
@@ -200,7 +329,8 @@ class Viscosity final : public EffectOf<Viscosity> {
   }
 
  private:
-  void smooth(StepState& state) const {
+  /// A copy of the velocities, with the ghost's.
+  static const Float4* copyVelocities(StepState& state) {
     const std::size_t n = state.particles.size();
     std::vector<Float4>& before = state.paired;
     resizeTight(before, n + 1);
@@ -209,14 +339,39 @@ class Viscosity final : public EffectOf<Viscosity> {
       std::copy(&state.particles.velocity[begin], &state.particles.velocity[begin] + (end - begin),
                 &before[begin]);
     });
+    return before.data();
+  }
+
+  void smooth(StepState& state) const {
+    const Float4* const before = copyVelocities(state);
     const float scale = static_cast<float>(xsph_) * state.lattice.massRatio;
     const auto ofRange = HWY_DYNAMIC_DISPATCH(smoothVelocitiesOfRange);
+    parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+      ofRange(state, before, scale, begin, end);
+    });
+  }
+
+  void smoothAffine(StepState& state, std::span<EffectBuffer> buffers) const {
+    const std::size_t n = state.particles.size();
+    for (EffectBuffer& row : buffers.first(3)) {
+      resizeTight(row, n + 1);
+      row[n] = Float4();
+    }
+    const AffineRows rows{buffers[0].data(), buffers[1].data(), buffers[2].data()};
+    const Float4* const before = copyVelocities(state);
+    const auto gradient = HWY_DYNAMIC_DISPATCH(velocityGradientOfRange);
+    const auto smoothed = HWY_DYNAMIC_DISPATCH(smoothAffineOfRange);
     parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-      ofRange(state, before.data(), scale, begin, end);
+      gradient(state, before, rows, begin, end);
+    });
+    const float scale = static_cast<float>(affine_) * state.lattice.massRatio;
+    parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
+      smoothed(state, before, rows, scale, begin, end);
     });
   }
 
   double xsph_ = 0.05;
+  double affine_ = 0;
   double kinematic_ = 0;
 };
 

@@ -56,7 +56,6 @@ HWY_INLINE void withOwnGradient(KernelType kernel, const Use& use) {
 template <class Kernel>
 void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   using Shape = KernelVectors<Kernel>;
-  constexpr float kSoundMoment = 0.02F;  // determinant below which the moment has no inverse to trust
   const Pairs d;
   const PairScale scale(state);
   const Float4* const positions = state.current.data();
@@ -92,9 +91,9 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     }
     const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, divergence);
     const Float4 sums = sumLanes(sumX, sumY, sumZ, pushes);
-    const float gamma = state.gamma[i];
+    const float gamma = state.gamma[i], resting = state.densityGamma(gamma);
     float density = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
-    density = added ? density + 1 - gamma : density / gamma;
+    density = added ? density + 1 - resting : density / resting;
     float source = slope * rest.w + toGap * gamma * std::min(density - 1, 0.0F);
     Vec3f missing = slope * scale.inverseSupport * sums.xyz();
     if (state.wallSlot[i] != FluidState::kNoWall) {
@@ -108,17 +107,7 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     out.diagonal[i] = -2 * slope * sums.w;
     out.missing[i] = missing.norm();
     const float toMoment = -slope * scale.inverseSquare;
-    // The inverse of a symmetric matrix by its cofactors.
-    const float xxM = toMoment * diagonal.x, yyM = toMoment * diagonal.y, zzM = toMoment * diagonal.z;
-    const float xyM = toMoment * rest.x, xzM = toMoment * rest.y, yzM = toMoment * rest.z;
-    const Vec3f cofactors(yyM * zzM - yzM * yzM, xxM * zzM - xzM * xzM, xxM * yyM - xyM * xyM);
-    const Vec3f mixed(xzM * yzM - xyM * zzM, xyM * yzM - xzM * yyM, xyM * xzM - xxM * yzM);
-    const float determinant = xxM * cofactors[0] + xyM * mixed[0] + xzM * mixed[1];
-    Moment& inverse = out.inverse[i];
-    inverse.sound = determinant > kSoundMoment;
-    if (!inverse.sound) continue;
-    inverse.diagonal = cofactors / determinant;
-    inverse.rest = mixed / determinant;
+    out.inverse[i] = InverseMoment(toMoment * diagonal.xyz(), toMoment * rest.xyz());
   }
 }
 
@@ -168,7 +157,7 @@ void pushRange(StepState& state, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(others[i], scale);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const Moment& inverse = in.inverse[i];
+    const InverseMoment& inverse = in.inverse[i];
     const float phi = others[i].w;
     // Either the difference to the particle's own, or the sum with it.
     const PairVector own = hn::Set(d, inverse.sound ? -phi : phi);
@@ -183,10 +172,7 @@ void pushRange(StepState& state, std::size_t begin, std::size_t end) {
     const Vec3f sum = toGradient * sumLanes(x, y, z, hn::Zero(d)).xyz();
     Vec3f gradient = sum;
     if (inverse.sound) {
-      gradient = inverse.diagonal.cwiseProduct(sum);
-      gradient += Vec3f(inverse.rest[0] * sum.y() + inverse.rest[1] * sum.z(),
-                        inverse.rest[0] * sum.x() + inverse.rest[2] * sum.z(),
-                        inverse.rest[1] * sum.x() + inverse.rest[2] * sum.y());
+      gradient = inverse.times(sum);
     } else if (state.wallSlot[i] != FluidState::kNoWall) {
       const float fall = (added ? 1 : state.density[i]) * phi * scale.inverseSupport;
       gradient -= fall * state.wallSlots[state.wallSlot[i]].sample.pairGradient;

@@ -57,11 +57,28 @@ struct SuppressedPush {
   Float4 began;
 };
 
-/// The inverse of a particle's moment matrix, see projection_simd.cpp.
-struct Moment {
+/// The inverse of the moment matrix of a particle's neighbours, -(m/rho0) sum_j grad W_ij (x_i - x_j)^T: it
+/// makes gradients by differences exact for what is linear in space.
+struct InverseMoment {
   Vec3f diagonal = Vec3f::Zero();  ///< xx, yy, zz
   Vec3f rest = Vec3f::Zero();      ///< xy, xz, yz
   bool sound = false;              ///< whether there is one
+
+  InverseMoment() = default;
+  /// Of the matrix with that diagonal (xx, yy, zz) and that rest (xy, xz, yz), by its cofactors.
+  InverseMoment(const Vec3f& d, const Vec3f& r) {
+    constexpr float kSound = 0.02F;  // determinant below which the inverse is not to be trusted
+    const Vec3f cofactors(d[1] * d[2] - r[2] * r[2], d[0] * d[2] - r[1] * r[1], d[0] * d[1] - r[0] * r[0]);
+    const Vec3f mixed(r[1] * r[2] - r[0] * d[2], r[0] * r[2] - r[1] * d[1], r[0] * r[1] - d[0] * r[2]);
+    const float determinant = d[0] * cofactors[0] + r[0] * mixed[0] + r[1] * mixed[1];
+    sound = determinant > kSound;
+    if (sound) diagonal = cofactors / determinant, rest = mixed / determinant;
+  }
+  Vec3f times(const Vec3f& v) const {
+    return {diagonal[0] * v[0] + (rest[0] * v[1] + rest[1] * v[2]),
+            diagonal[1] * v[1] + (rest[0] * v[0] + rest[2] * v[2]),
+            diagonal[2] * v[2] + (rest[1] * v[0] + rest[2] * v[1])};
+  }
 };
 
 /// Where a projection of the velocities works, a value a particle.
@@ -71,7 +88,7 @@ struct ProjectionBuffers {
   std::vector<float> missing;          ///< what air leaves out of h grad rho / rho0 (1)
   std::vector<float> residual, image;  ///< (m^2/s)
   std::vector<std::uint8_t> active;    ///< whether it has a part in the solve
-  std::vector<Moment> inverse;
+  std::vector<InverseMoment> inverse;
 
   void resize(std::size_t n) {
     potential.resize(n), diagonal.resize(n), missing.resize(n), residual.resize(n), image.resize(n);
@@ -161,8 +178,10 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
   /// times the constraint's derivative with respect to gamma.
   float wallPush(std::size_t i) const {
-    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / gamma[i];
+    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
+  /// What the sum of the neighbours is divided by: gamma, and with a projection that of a resting lattice.
+  float densityGamma(float g) const { return projects() ? g * lattice.besideWalls(g) : g; }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }
 };

@@ -1,4 +1,5 @@
-// Kinematic viscosity against the decay of a shear wave, exp(-nu k^2 t), and against what it must conserve.
+// Kinematic viscosity against the decay of a shear wave, exp(-nu k^2 t), and against what it must conserve;
+// affine XSPH against the fields that it must spare and the noise that it must damp.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,56 @@ TEST(KinematicViscosity, AShearWaveDecaysAsItMust) {
   for (const auto& [along, across] : directions)
     EXPECT_NEAR(decayOverExpected(places, along.normalized(), across.normalized()), 1, 0.03)
         << along.transpose();
+}
+
+// Translation, rotation, shear and expansion at once, surfaces included; edges and corners of the free cube
+// have too few neighbours to tell.
+TEST(AffineXsph, SparesWhatIsLinearInSpace) {
+  Eigen::Matrix3f gradient;
+  gradient << 0.3F, -2, 0.7F, 1.5F, -0.8F, 0.4F, -0.2F, 0.9F, 0.6F;
+  const auto field = [&](const Vec3f& x) { return Vec3f(gradient * x + Vec3f(1, -2, 3)); };
+  for (const std::vector<Vec3f>& places : {stirredCube(), latticePlaces(8, 0.4F)}) {
+    FreeFluid fluid(places, field);
+    const Particles& particles = fluid.state().particles;
+    fluid.changeVelocities(R"({"viscosity": {"xsph": 0, "affine_xsph": 1}})");
+    Vec3f size = Vec3f::Zero();
+    for (const Float4& p : particles.position) size = size.cwiseMax(p.xyz().cwiseAbs());
+    const Vec3f rim = size - Vec3f::Constant(4.5F * static_cast<float>(kSpacing));
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const Vec3f x = particles.position[i].xyz();
+      if ((x.cwiseAbs().array() > rim.array()).count() > 1) continue;
+      EXPECT_LT((particles.velocity[i].xyz() - field(x)).norm(), 2e-5F) << x.transpose();
+    }
+    // What plain XSPH does to the same field.
+    fluid.changeVelocities(R"({"viscosity": {"xsph": 1}})");
+    float most = 0;
+    for (std::size_t i = 0; i < particles.size(); ++i)
+      most = std::max(most, (particles.velocity[i].xyz() - field(particles.position[i].xyz())).norm());
+    EXPECT_GT(most, 0.01F);
+  }
+}
+
+// A field that differs from particle to particle loses most of its energy in ten steps, a wave as long as the
+// cube next to nothing, and momentum stays.
+TEST(AffineXsph, DampsNoiseSparesWavesAndKeepsMomentum) {
+  const std::vector<Vec3f> places = stirredCube();
+  constexpr float kWave = std::numbers::pi_v<float> / static_cast<float>(kSide * kSpacing);
+  const auto noise = [](const Vec3f& x) {
+    return Vec3f(std::sin(9000 * x.x() + 7000 * x.y()), std::cos(8000 * x.z() - 6000 * x.x()),
+                 std::sin(9500 * x.y() + 5000 * x.z()));
+  };
+  const auto wave = [](const Vec3f& x) { return Vec3f(0, std::sin(kWave * x.x()), 0); };
+  const auto kept = [&](const auto& field) {
+    FreeFluid fluid(places, field);
+    const Particles& particles = fluid.state().particles;
+    const Moments before = momentsOf(particles.position, particles.velocity);
+    for (int k = 0; k < 10; ++k) fluid.changeVelocities(R"({"viscosity": {"xsph": 0, "affine_xsph": 0.3}})");
+    const Moments after = momentsOf(particles.position, particles.velocity);
+    EXPECT_LT((after.momentum - before.momentum).norm(), 1e-5 * 1000 * before.speed);
+    return after.kinetic / before.kinetic;
+  };
+  EXPECT_LT(kept(noise), 0.2);
+  EXPECT_NEAR(kept(wave), 1, 1e-3);
 }
 
 TEST(KinematicViscosity, MomentumAndAngularMomentumStay) {
