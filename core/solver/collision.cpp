@@ -37,7 +37,9 @@ void suppressPush(StepState& state, std::size_t i, const Vec3f& came, const Vec3
 
 /// Puts particle i, which came from `from`, where it was at the start of the step or since, back on the fluid
 /// side, and books that.
-void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan, Push& push) {
+/// All that it calls is put in its place: most particles are done after the first lines.
+[[gnu::flatten]] void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan,
+                              Push& push) {
   Vec3f p = state.current[i].xyz();
   // Whether no wall can be in its way, for there is more room at one end than the way is long.
   const float clearance = knownClearance(state, i, p);

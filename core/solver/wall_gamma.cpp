@@ -100,7 +100,6 @@ void evaluateGamma(StepState& state) {
   const float reach = kLinearReach * state.supportRadius, watchReach = kWatchReach * state.supportRadius;
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     auto& [known, fresh] = found[chunk];
-    known.reserve(end - begin), fresh.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const auto particle = static_cast<std::uint32_t>(i);
       const Vec3f p = state.current[i].xyz();
