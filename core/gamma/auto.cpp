@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "core/gamma/batches.h"
 #include "core/gamma/gamma_method.h"
 #include "core/gamma/half_spaces.h"
 
@@ -28,6 +29,7 @@ class AutoGamma final : public GammaMethod {
         support_(context.supportRadius),
         flat_(FlatPlanes::of(boundary_, support_)),
         methods_{makeProductGamma(context), makeFacetsGamma(context), nullptr},
+        blocks_(makeBlockGamma(context)),
         curved_(std::none_of(boundary_.surfaces().begin(), boundary_.surfaces().end(),
                              [](const auto& surface) { return surface->planar() || surface->faceted(); })) {
     if (std::unique_ptr<GridGamma> grid = withGrid ? makeAboutCurves(context) : nullptr) {
@@ -45,22 +47,26 @@ class AutoGamma final : public GammaMethod {
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     if (curved_) return methods_[kCurved]->evaluate(points, out);
+    // Gathered by method, so that each has a batch.
+    std::array<std::vector<std::size_t>, kPicks> picked;
     if (flat_) {
       methods_[kProduct]->evaluate(points, out);
       if (flat_->rightAngled()) return;
-    }
-    // Gathered by method, so that each has a batch.
-    std::array<std::vector<std::size_t>, kPicks> picked;
-    HalfSpaces walls;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3f p = points[i].xyz();
-      if (flat_) {
-        if (flat_->obliqueAt(p)) picked[kFacets].push_back(i);
-        continue;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (flat_->obliqueAt(points[i].xyz())) picked[kFacets].push_back(i);
+    } else {
+      HalfSpaces walls;
+      const auto choose = [&](std::size_t i) {
+        if (out[i].distance < support_) picked[pick(points[i].xyz(), walls)].push_back(i);
+      };
+      if (blocks_ != nullptr) {
+        std::vector<std::size_t> others;
+        blocks_->evaluate(points, out, others);
+        std::for_each(others.begin(), others.end(), choose);
+      } else {
+        measure(boundary_, points, out);
+        for (std::size_t i = 0; i < points.size(); ++i) choose(i);
       }
-      out[i] = GammaSample{};
-      out[i].distance = boundary_.distance(p);
-      if (out[i].distance < support_) picked[pick(p, walls)].push_back(i);
     }
     std::vector<Float4> at;
     std::vector<GammaSample> samples;
@@ -160,8 +166,8 @@ class AutoGamma final : public GammaMethod {
       meshes = true;
     }
     if (meshes || walls.collect(boundary_, p, support_, true)) return kFacets;
-    Pick most = ofPlanes(walls.tanks);
-    for (const std::vector<HalfSpace>& block : walls.blocks) most = std::max(most, ofPlanes(block));
+    Pick most = ofPlanes(walls.tanks());
+    for (const std::vector<HalfSpace>& block : walls.blocks()) most = std::max(most, ofPlanes(block));
     return most;
   }
 
@@ -176,8 +182,9 @@ class AutoGamma final : public GammaMethod {
   float support_;
   std::optional<FlatPlanes> flat_;
   std::unique_ptr<GammaMethod> methods_[kPicks];
-  const GridGamma* grid_ = nullptr;  ///< the last, if it is one
-  bool curved_;                      ///< all walls are
+  std::unique_ptr<BlockGamma> blocks_;  ///< in place of facets where it can; null: nowhere
+  const GridGamma* grid_ = nullptr;     ///< the last, if it is one
+  bool curved_;                         ///< all walls are
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "core/base/files.h"
 #include "core/base/hash.h"
+#include "core/gamma/batches.h"
 #include "core/gamma/gamma_method.h"
 
 namespace migiwa {
@@ -73,10 +74,7 @@ class BakedGamma final : public GridGamma {
   bool covers(const Vec3f& p) const override { return laidOut() && grid_.placeOf(p).state >= 0; }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = GammaSample{};
-      out[i].distance = boundary_.distance(points[i].xyz());
-    }
+    measure(boundary_, points, out);
     evaluateMeasured(points, out);
   }
 

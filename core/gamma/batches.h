@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,14 @@
 #include "core/walls/surface.h"
 
 namespace migiwa {
+
+/// Begins samples anew, with the distances (m) of their points.
+inline void measure(const Boundary& boundary, std::span<const Float4> points, std::span<GammaSample> out) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out[i] = GammaSample{};
+    out[i].distance = boundary.distance(points[i].xyz());
+  }
+}
 
 // The product over planes for many points at once, with the vector instructions of the processor at hand.
 
@@ -58,5 +67,23 @@ struct EdgeIntegrals {
 };
 /// Fills one result for each edge. Both are filled up to whole vectors.
 void integrate(KernelType kernel, std::vector<PolygonEdge>& edges, std::vector<EdgeIntegrals>& results);
+
+// gamma about thin upright blocks that stand apart as a point sees them: the sums of facets.cpp, without its
+// search for what hides what.
+
+class BlockGamma {
+ public:
+  BlockGamma() = default;
+  virtual ~BlockGamma() = default;
+  BlockGamma(const BlockGamma&) = delete;
+  BlockGamma& operator=(const BlockGamma&) = delete;
+
+  /// Fills out[i] for points[i] where it can; elsewhere the distance alone, and i is appended to `others`.
+  virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out,
+                        std::vector<std::size_t>& others) const = 0;
+};
+
+/// Null where no wall is such a block.
+std::unique_ptr<BlockGamma> makeBlockGamma(const GammaContext& context);
 
 }  // namespace migiwa

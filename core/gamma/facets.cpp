@@ -19,22 +19,15 @@
 
 #include <Eigen/Geometry>
 
-#include "core/gamma/batches.h"
 #include "core/gamma/gamma_method.h"
 #include "core/gamma/half_spaces.h"
+#include "core/gamma/polygon_sums.h"
 #include "core/sph/kernels.h"
 #include "core/walls/surface.h"
 
 namespace migiwa {
 
 namespace {
-
-/// Of the support radius: so far behind a plane a point is still taken to lie in front of it.
-constexpr float kOnPlane = 1e-3F;
-/// Of the support radius: nearer than that to a plane, a corner of another facet lies on it.
-constexpr float kRounding = 1e-5F;
-/// Of the support radius: from a corner or an edge no facet is seen, so that much a point is kept off walls.
-constexpr float kClear = 1e-4F;
 
 /// A facet as a point at the origin sees it; lengths over the support radius.
 struct Facet {
@@ -59,6 +52,8 @@ struct Facet {
   }
   /// Whether it faces the point, and hides what is behind it.
   bool shades() const { return hides && front(); }
+  /// Whether the point is in its plane, as good as: it is seen edge-on, and what is behind it past its edges.
+  bool edgeOn() const { return distance < kOnFacet && !within(0); }
 };
 
 /// A cone about the point that holds a facet.
@@ -72,7 +67,7 @@ struct Cone {
     axis.normalize();
     for (int k = 0; k < polygon.count; ++k)
       cosine = std::min(cosine, axis.dot(polygon.corner(k)) / polygon.corner(k).norm());
-    cosine -= kRounding;
+    cosine -= kFacetRounding;
     sine = std::sqrt(std::max(1 - cosine * cosine, 0.0F));
   }
   /// Whether no direction is in both.
@@ -102,8 +97,8 @@ bool mayShade(const Facet& facet, const Facet& other, bool first) {
   bool behind = false, before = false;
   for (int k = 0; k < other.polygon.count; ++k) {
     const float height = within(facet, other.polygon.corner(k));
-    behind = behind || height < -kRounding;
-    before = before || height > kRounding;
+    behind = behind || height < -kFacetRounding;
+    before = before || height > kFacetRounding;
   }
   // Of two in one plane, the first counts.
   if (!behind && (before || !first)) return false;
@@ -111,7 +106,7 @@ bool mayShade(const Facet& facet, const Facet& other, bool first) {
     const float side = other.front() ? 1.0F : -1.0F;
     bool nearer = false;
     for (int k = 0; k < facet.polygon.count; ++k)
-      nearer = nearer || side * within(other, facet.polygon.corner(k)) > kRounding;
+      nearer = nearer || side * within(other, facet.polygon.corner(k)) > kFacetRounding;
     if (!nearer) return false;
   }
   // Nor where one of its edges, as the point sees it, keeps them apart.
@@ -131,17 +126,13 @@ class FacetsGamma final : public GammaMethod {
       : boundary_(context.boundary), kernel_(context.kernel), support_(context.supportRadius) {}
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = GammaSample{};
-      out[i].distance = boundary_.distance(points[i].xyz());
-    }
+    measure(boundary_, points, out);
     evaluateMeasured(points, out);
   }
 
   void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const override {
     thread_local Scratch scratch;
-    scratch.edges.clear();
-    scratch.owners.clear();
+    scratch.sums.clear();
     scratch.moved.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
       GammaSample& sample = out[i];
@@ -156,38 +147,21 @@ class FacetsGamma final : public GammaMethod {
         moved /= support_;
       }
       look(p, scratch);
-      if (sample.distance < kClear * support_) {
+      if (sample.distance < kClearOfFacets * support_) {
         moved -= keepOff(scratch);
         scratch.moved.push_back({i, moved});
       }
-      addTanks(i, scratch, sample);
+      scratch.sums.addTanks(i, scratch.tanks, sample);
       addFacets(i, scratch, sample);
     }
-    integrate(kernel_, scratch.edges, scratch.results);
-    for (std::size_t k = 0; k < scratch.owners.size(); ++k) {
-      const Owner& owner = scratch.owners[k];
-      GammaSample& sample = out[owner.sample];
-      sample.gamma += owner.flux * scratch.results[k].flux;
-      sample.gradient -= scratch.results[k].area * owner.normal;
-      sample.pairGradient -= scratch.results[k].pairArea * owner.normal;
-    }
+    scratch.sums.finish(kernel_, out);
     for (const auto& [at, by] : scratch.moved) out[at].gamma += out[at].gradient.dot(by);
-    for (GammaSample& sample : out) sample.gamma = std::clamp(sample.gamma, 0.0F, 1.0F);
+    clampToRange(out);
   }
 
  private:
-  using Pair = PairKernel<Kernel>;
-
-  /// What the integrals along an edge are added to.
-  struct Owner {
-    std::size_t sample;
-    float flux;    ///< sign, 0 for the side of a cone
-    Vec3f normal;  ///< with the sign
-  };
   struct Scratch {
-    std::vector<PolygonEdge> edges;
-    std::vector<EdgeIntegrals> results;
-    std::vector<Owner> owners;                         ///< of the edges
+    PolygonSums<Kernel> sums;
     std::vector<std::pair<std::size_t, Vec3f>> moved;  ///< samples, and how far from where they were taken
     // Of one point:
     std::vector<HalfSpace> tanks;
@@ -220,7 +194,7 @@ class FacetsGamma final : public GammaMethod {
         if (std::abs(distance) >= 1) continue;
         Facet& added = scratch.facets.emplace_back();
         added.normal = facet.normal;
-        added.distance = distance < -kOnPlane ? distance : std::max(distance, 0.0F);
+        added.distance = distance < -kOnFacet ? distance : std::max(distance, 0.0F);
         added.hides = facet.hides;
         added.alone = facet.alone;
         added.wall = first;
@@ -245,9 +219,10 @@ class FacetsGamma final : public GammaMethod {
   static Vec3f keepOff(Scratch& scratch) {
     Vec3f away = Vec3f::Zero();
     for (const HalfSpace& tank : scratch.tanks)
-      if (tank.e < kClear) away += kClear * tank.normal;
+      if (tank.e < kClearOfFacets) away += kClearOfFacets * tank.normal;
     for (const Facet& facet : scratch.facets)
-      if (facet.front() && facet.distance < kClear && facet.within(kClear)) away += kClear * facet.normal;
+      if (facet.front() && facet.distance < kClearOfFacets && facet.within(kClearOfFacets))
+        away += kClearOfFacets * facet.normal;
     for (HalfSpace& tank : scratch.tanks) tank.e = std::max(tank.e + away.dot(tank.normal), 0.0F);
     for (Facet& facet : scratch.facets) {
       const float distance = facet.distance + away.dot(facet.normal);
@@ -268,7 +243,8 @@ class FacetsGamma final : public GammaMethod {
       return facet.wall == facets.front().wall && facet.front();
     });
     for (std::size_t k = 0; k < facets.size(); ++k)
-      if (facets[k].shades() && !facets[k].polygon.empty() && !(oneWall && facets[k].alone))
+      if (facets[k].shades() && !facets[k].edgeOn() && !facets[k].polygon.empty() &&
+          !(oneWall && facets[k].alone))
         scratch.shades.emplace_back(facets[k].polygon, k);
     for (std::size_t k = 0; k < facets.size(); ++k)
       facets[k].shaded = anyShade(k, scratch, [](const Facet&) { return true; });
@@ -320,97 +296,11 @@ class FacetsGamma final : public GammaMethod {
     });
   }
 
-  /// Inside of all half-spaces: each takes what is behind its own part of their border.
-  void addTanks(std::size_t i, Scratch& scratch, GammaSample& sample) const {
-    const std::vector<HalfSpace>& tanks = scratch.tanks;
-    for (std::size_t k = 0; k < tanks.size(); ++k) {
-      const HalfSpace& tank = tanks[k];
-      // A square that holds the support, in the plane.
-      const Vec3f one = tank.normal.unitOrthogonal(), other = tank.normal.cross(one),
-                  foot = -tank.e * tank.normal;
-      constexpr float kBeyond = 1.01F;
-      Polygon polygon;
-      for (const auto& [a, b] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}})
-        polygon.add(foot + kBeyond * (static_cast<float>(a) * one + static_cast<float>(b) * other));
-      for (std::size_t l = 0; l < tanks.size(); ++l)
-        if (l != k) clip(polygon, {tanks[l].normal, tanks[l].e});
-      if (!polygon.empty()) addPolygon(i, polygon, tank.normal, tank.e, 1, false, scratch, sample);
-    }
-  }
-
   /// What is behind a part of a facet, as far as the half-spaces reach.
-  void addPiece(std::size_t i, const Facet& facet, const Polygon& polygon, Scratch& scratch,
-                GammaSample& sample) const {
-    const std::vector<HalfSpace>& tanks = scratch.tanks;
-    if (!addPolygon(i, polygon, facet.normal, facet.distance, 1, facet.open, scratch, sample)) return;
-    for (std::size_t k = 0; k < tanks.size(); ++k) {
-      Polygon seen = throughTo(polygon, facet, k, tanks);
-      if (!seen.empty())
-        addPolygon(i, seen, tanks[k].normal, tanks[k].e, facet.front() ? -1.0F : 1.0F, facet.open, scratch,
-                   sample);
-    }
-  }
-
-  /// What a point sees of a tank's plane through a polygon, where no other plane of the tank comes before.
-  static Polygon throughTo(const Polygon& polygon, const Facet& facet, std::size_t k,
-                           const std::vector<HalfSpace>& tanks) {
-    const HalfSpace& tank = tanks[k];
-    const float distance = std::max(tank.e, kRounding);
-    Polygon seen = polygon;
-    // Where the plane is within the support.
-    clip(seen, {-tank.normal, -distance * std::abs(facet.distance)});
-    for (std::size_t l = 0; l < tanks.size() && !seen.empty(); ++l) {
-      if (l == k) continue;
-      const Vec3f nearer = tanks[l].normal / std::max(tanks[l].e, kRounding) - tank.normal / distance;
-      if (const float length = nearer.norm(); length > 0) clip(seen, {nearer / length, 0});
-    }
-    for (int corner = 0; corner < seen.count; ++corner) {
-      Vec3f& y = seen.corners[static_cast<std::size_t>(corner)];
-      y *= distance / std::max(-tank.normal.dot(y), 1e-9F);
-    }
-    if (!facet.front()) std::reverse(seen.corners.begin(), seen.corners.begin() + seen.count);
-    return seen;
-  }
-
-  /// Adds `sign` times the integrals over a polygon in a plane at `distance` and, if `open`, over the sides
-  /// of the cone behind it. False where it is out of reach.
-  bool addPolygon(std::size_t i, const Polygon& polygon, const Vec3f& normal, float distance, float sign,
-                  bool open, Scratch& scratch, GammaSample& sample) const {
-    const float height = std::abs(distance), side = distance < 0 ? -sign : sign;
-    const std::size_t before = scratch.owners.size();
-    bool within = true;
-    for (int k = 0; k < polygon.count; ++k) {
-      const Vec3f &a = polygon.corner(k), way = polygon.corner(k + 1) - a;
-      const float length = way.norm();
-      if (length < 1e-7F) continue;
-      const Vec3f along = way / length, inwards = normal.cross(along);
-      const float inside = -a.dot(inwards), from = a.dot(along);
-      const float half2 = 1 - height * height - inside * inside;
-      if (inside < 0) {
-        within = false;
-        if (half2 <= 0) {
-          scratch.owners.resize(before);
-          scratch.edges.resize(before);
-          return false;
-        }
-      }
-      if (half2 <= 0) continue;
-      const float half = std::sqrt(half2);
-      const float start = std::max(from, -half), end = std::min(from + length, half);
-      if (start >= end) continue;
-      scratch.edges.push_back({height, inside, start, end});
-      scratch.owners.push_back({i, side, sign * normal});
-      if (!open) continue;
-      const float least = std::sqrt(1 - half2);
-      if (least < kRounding) continue;
-      scratch.edges.push_back({0, least, start, end});
-      scratch.owners.push_back({i, 0, sign / least * (distance * inwards - inside * normal)});
-    }
-    if (!within) return true;
-    sample.gamma -= side * (1 - Kernel::planeGamma(height));
-    sample.gradient += sign * Kernel::planeGammaSlope(height) * normal;
-    sample.pairGradient += sign * Pair::planeGammaSlope(height) * normal;
-    return true;
+  static void addPiece(std::size_t i, const Facet& facet, const Polygon& polygon, Scratch& scratch,
+                       GammaSample& sample) {
+    if (scratch.sums.add(i, polygon, facet.normal, facet.distance, 1, facet.open, sample))
+      scratch.sums.addBehind(i, polygon, facet.distance, facet.open, scratch.tanks, sample);
   }
 
   const Boundary& boundary_;

@@ -38,31 +38,33 @@ bool intersect(std::vector<HalfSpace>& set, const HalfSpace& added) {
 
 bool HalfSpaces::addBlock(bool thin, float inverseSupport) {
   if (thin) dropHidden(pieces_);
-  std::vector<HalfSpace>& block = blocks.emplace_back(tanks);
-  std::vector<float> own;
+  if (count_ == blocks_.size()) blocks_.emplace_back();
+  std::vector<HalfSpace>& block = blocks_[count_++];
+  block = tanks_;
+  own_.clear();
   for (const WallPiece& piece : pieces_) {
     const HalfSpace behind{-piece.normal, -piece.planeDistance * inverseSupport};
-    if (intersect(block, behind)) own.push_back(behind.e);
+    if (intersect(block, behind)) own_.push_back(behind.e);
   }
   if (!thin) return false;
   // An edge of the block is as near as its two faces together.
-  for (std::size_t k = 0; k < own.size(); ++k)
+  for (std::size_t k = 0; k < own_.size(); ++k)
     for (std::size_t l = 0; l < k; ++l)
-      if (own[k] * own[k] + own[l] * own[l] < 1) return true;
+      if (own_[k] * own_[k] + own_[l] * own_[l] < 1) return true;
   return false;
 }
 
 bool HalfSpaces::collect(const Boundary& boundary, const Vec3f& p, float supportRadius, bool untilRim) {
-  tanks.clear();
-  blocks.clear();
+  tanks_.clear();
+  count_ = 0;
   bool thinRim = false;
   const float inverse = 1 / supportRadius;
-  const std::span<const Surface* const> near = boundary.near(p, supportRadius);
+  const NearWalls near = boundary.near(p, supportRadius);
   for (const Surface* surface : near) {
     if (surface->pieceRule() != PieceRule::fluidInsideAll) continue;
     pieces_.clear();
     surface->pieces(p, supportRadius, pieces_);
-    for (const WallPiece& piece : pieces_) intersect(tanks, {piece.normal, piece.planeDistance * inverse});
+    for (const WallPiece& piece : pieces_) intersect(tanks_, {piece.normal, piece.planeDistance * inverse});
   }
   for (const Surface* surface : near) {
     if (surface->pieceRule() != PieceRule::solidInsideAll) continue;

@@ -22,10 +22,13 @@ struct HalfSpace {
   float e;
 };
 
-struct HalfSpaces {
-  std::vector<HalfSpace> tanks;
+class HalfSpaces {
+ public:
+  const std::vector<HalfSpace>& tanks() const { return tanks_; }
+  /// For an intersection of one's own.
+  std::vector<HalfSpace>& tanks() { return tanks_; }
   /// Each with the tanks' half-spaces.
-  std::vector<std::vector<HalfSpace>> blocks;
+  std::span<const std::vector<HalfSpace>> blocks() const { return std::span(blocks_).first(count_); }
   /// Takes the planar pieces of the surfaces that are nearer than the support radius. Returns whether the rim
   /// of a thin block is in reach, where what it hides is no intersection of half-spaces; with `untilRim` it
   /// then leaves out what else there is.
@@ -35,7 +38,12 @@ struct HalfSpaces {
   /// Whether its rim is in reach, if it is thin.
   bool addBlock(bool thin, float inverseSupport);
 
+  std::vector<HalfSpace> tanks_;
+  std::vector<std::vector<HalfSpace>> blocks_;  ///< more than there are: their memory stays
+  std::size_t count_ = 0;
+  // Of one block:
   std::vector<WallPiece> pieces_;
+  std::vector<float> own_;  ///< what its faces add to the intersection
 };
 
 /// Adds a half-space to an intersection: of two that look the same way, the narrower counts, or coplanar

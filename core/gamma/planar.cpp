@@ -35,15 +35,12 @@ class PlanarGamma final : public GammaMethod {
         const Vec3f p = points[i].xyz();
         if (out[i].distance < 0) out[i].distance = boundary_.distance(p);
         if (!Combine::kOblique || !flat_->obliqueAt(p)) continue;
-        flat_->inReach(p, walls.tanks);
+        flat_->inReach(p, walls.tanks());
         combine(walls, parts, out[i]);
       }
       return;
     }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = GammaSample{};
-      out[i].distance = boundary_.distance(points[i].xyz());
-    }
+    measure(boundary_, points, out);
     evaluateMeasured(points, out);
   }
 
@@ -71,9 +68,9 @@ class PlanarGamma final : public GammaMethod {
   /// Without `value` only the gradient is right.
   template <class K>
   static KernelPart fluidPart(const HalfSpaces& walls, std::vector<KernelPart>& parts, bool value) {
-    kernelParts<K>(walls.tanks, parts);
+    kernelParts<K>(walls.tanks(), parts);
     KernelPart fluid = Combine::intersection(parts, value);
-    for (const std::vector<HalfSpace>& block : walls.blocks) {
+    for (const std::vector<HalfSpace>& block : walls.blocks()) {
       kernelParts<K>(block, parts);
       const KernelPart solid = Combine::intersection(parts, value);
       fluid.value -= solid.value;

@@ -232,8 +232,13 @@ void MeshSource::describe(FieldVisitor& visitor) {
     ImportedShape shape = importShape(file_.path);
     requireUnchanged(file_.path, file_.identity);
     if (!shape.isMesh() || !shape.closed) {
-      visitor.fault("file", "expected a closed mesh, found one that is open or has no triangles (" +
-                                file_.path.string() + ")");
+      std::string found = "points alone, of which a mesh program makes a mesh";
+      if (shape.branching) {
+        found = "one that encloses nothing there: " + shape.branching->message;
+      } else if (shape.isMesh()) {
+        found = "one that is open: " + shape.rim + "; fill its holes in a mesh program";
+      }
+      visitor.fault("file", "expected a closed mesh, found " + found + " (" + file_.path.string() + ")");
       return;
     }
     transformShape(shape, transform_);

@@ -166,11 +166,13 @@ struct Part {
   bool closed = true;
 };
 
-/// Appends the parts of the mesh. Returns a corner at which a surface has one side only, if there is one.
+/// Appends the parts of the mesh. Returns a corner at which a surface has one side only, if there is one: it
+/// is cut where it comes back to itself the other way round.
 std::optional<std::uint32_t> findParts(const TriangleMesh& mesh, const Edges& edges,
                                        std::vector<Part>& parts) {
   enum : std::uint8_t { unknown, same, opposite };
   std::vector<std::uint8_t> state(mesh.triangles.size(), unknown);
+  std::optional<std::uint32_t> oneSided;
   for (std::uint32_t start = 0; start < mesh.triangles.size(); ++start) {
     if (state[start] != unknown) continue;
     Part part;
@@ -192,27 +194,27 @@ std::optional<std::uint32_t> findParts(const TriangleMesh& mesh, const Edges& ed
           state[other] = wanted;
           part.triangles.push_back(other);
         } else if (state[other] != wanted) {
-          return a;
+          part.closed = false;
+          if (!oneSided) oneSided = a;
         }
       }
     }
     for (const std::uint32_t triangle : part.triangles) part.turned.push_back(state[triangle] == opposite);
     parts.push_back(std::move(part));
   }
-  return std::nullopt;
+  return oneSided;
 }
 
-std::vector<Part> connectedParts(const TriangleMesh& mesh, Edges& edges, const std::string& place) {
+/// Sets `oneSided` to what findParts() returns.
+std::vector<Part> connectedParts(const TriangleMesh& mesh, Edges& edges,
+                                 std::optional<std::uint32_t>& oneSided) {
   std::vector<Part> parts;
-  std::optional<std::uint32_t> oneSided = findParts(mesh, edges, parts);
+  oneSided = findParts(mesh, edges, parts);
   if (oneSided && edges.crowded()) {
     parts.clear();
     edges.pairByDirection();
     oneSided = findParts(mesh, edges, parts);
   }
-  if (oneSided)
-    throw InputError(place, "expected a surface with two sides, found one like a Moebius strip at " +
-                                at(mesh.vertices[*oneSided]));
   return parts;
 }
 
@@ -290,20 +292,32 @@ std::vector<std::size_t> outermost(const TriangleMesh& mesh, std::span<const Par
   return result;
 }
 
+/// Whether the part lies in a hollow: in another part that faces inwards once it is turned.
+bool inHollow(const TriangleMesh& mesh, std::span<const Part> parts, const std::vector<bool>& flips,
+              std::size_t part) {
+  for (std::size_t other = 0; other < parts.size() && parts.size() <= kMostNestedParts; ++other)
+    if (other != part && (signedVolume(mesh, parts[other]) < 0) != flips[other] &&
+        liesWithin(mesh, parts[part], parts[other]))
+      return true;
+  return false;
+}
+
 /// Which closed parts have to be turned for the outermost ones to face outwards. Those within them
 /// keep how they face relative to them: inwards is the wall of a hollow.
 std::vector<bool> turnsOfClosed(const TriangleMesh& mesh, std::span<const Part> parts,
                                 const std::vector<bool>& byMost, std::vector<std::string>& notes) {
   const std::vector<std::size_t> around = outermost(mesh, parts);
   std::vector<bool> flips;
-  std::size_t needless = 0;
+  std::vector<std::size_t> outwards;  // of those within others
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const std::size_t outer = around[k];
     const bool flip = signedVolume(mesh, parts[outer]) < 0;
     const bool inverted = flip != byMost[outer];
     flips.push_back(outer == k ? flip : byMost[k] != inverted);
-    if (outer != k && (signedVolume(mesh, parts[k]) < 0) == flips[k]) ++needless;
+    if (outer != k && (signedVolume(mesh, parts[k]) < 0) == flips[k]) outwards.push_back(k);
   }
+  const auto needless = static_cast<std::size_t>(std::count_if(
+      outwards.begin(), outwards.end(), [&](std::size_t k) { return !inHollow(mesh, parts, flips, k); }));
   if (needless > 0)
     notes.push_back(counted(needless, "part lies", "parts lie") +
                     " within others and face outwards as those do, which changes nothing: for a hollow, turn "
@@ -425,19 +439,29 @@ RepairedMesh repairMesh(TriangleMesh& mesh, const std::string& place, std::vecto
     notes.push_back("sheets meet at " + counted(odd.count, "edge", "edges") +
                     " of three or more triangles, the first at " + at(odd.middle));
   }
-  std::vector<Part> parts = connectedParts(mesh, edges, place);
+  std::optional<std::uint32_t> oneSided;
+  std::vector<Part> parts = connectedParts(mesh, edges, oneSided);
+  if (oneSided) {
+    const std::string where = "like a Moebius strip at " + at(mesh.vertices[*oneSided]);
+    if (!result.branching)
+      result.branching = {place, "expected a surface with two sides, found one " + where +
+                                     "; a wall of shape \"mesh\" takes it as a sheet"};
+    notes.push_back("the mesh has one side only, " + where + "; as a wall it is a sheet");
+  }
   const auto open =
       std::stable_partition(parts.begin(), parts.end(), [](const Part& part) { return part.closed; });
   orient(mesh, {parts.begin(), open}, {open, parts.end()}, notes);
   if (shared) dropShared(mesh, notes);
   if (odd.count > 0) separate(mesh, parts);
   result.closed = open == parts.end();
-  if (const Edges::Found rim = edges.open(mesh); rim.count > 0)
+  if (const Edges::Found rim = edges.open(mesh); rim.count > 0) {
+    result.rim = counted(rim.count, "edge has", "edges have") +
+                 " a triangle on one side only, the first near " + at(rim.middle);
     notes.push_back(
-        "the mesh is open: " + counted(rim.count, "edge has", "edges have") +
-        " a triangle on one side only, the first near " + at(rim.middle) +
+        "the mesh is open: " + result.rim +
         "; its triangles as a wall end there and have fluid on both sides, a SLIM surface fitted to it knows "
         "inside and outside near it only");
+  }
   return result;
 }
 

@@ -214,6 +214,7 @@ ImportedShape importShape(const fs::path& file) {
     RepairedMesh repaired = repairMesh(shape.mesh, file.string(), shape.notes);
     shape.closed = repaired.closed;
     shape.branching = std::move(repaired.branching);
+    shape.rim = std::move(repaired.rim);
     moveBack(shape, origin);
     return shape;
   }

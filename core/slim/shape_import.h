@@ -22,8 +22,10 @@ struct ImportedShape {
   TriangleMesh mesh;     ///< no triangles: the file holds points
   OrientedPoints cloud;  ///< no points: the file holds a mesh
   bool closed = true;    ///< encloses a solid
-  /// Where more than two sheets meet at an edge: a wall is made of them, a SLIM surface is not.
+  /// Where more than two sheets meet at an edge, or a sheet has one side only: a wall is made of them, a SLIM
+  /// surface is not.
   std::optional<Fault> branching;
+  std::string rim;  ///< of an open mesh: how many edges end it, and where
   /// The mesh's vertices, or the points, in double where floats do not hold what the file says: far from the
   /// origin. Empty elsewhere.
   std::vector<Vec3d> exact;
@@ -38,7 +40,7 @@ struct ImportedShape {
 ImportedShape importShape(const std::filesystem::path& file);
 
 /// The points that a SLIM surface of about so many nodes (0: not known) is fitted to. Throws InputError for
-/// sheets of which more than two meet at an edge.
+/// sheets of which more than two meet at an edge, or that have one side only.
 OrientedPoints fitPoints(const ImportedShape& shape, int nodes);
 
 // Makes points with normals as files hold them into points whose normals agree.
@@ -62,14 +64,15 @@ void weldMesh(TriangleMesh& mesh, std::vector<std::string>& notes);
 struct RepairedMesh {
   bool closed = true;
   std::optional<Fault> branching{};  ///< of ImportedShape
+  std::string rim{};                 ///< of ImportedShape
 };
 
 /// Welds corners, drops triangles that are degenerate, there twice or shared by two parts that touch, and
 /// turns triangles so that the outermost closed parts face outwards; a
 /// closed part within another keeps how it faces relative to that one: inwards is the wall of a hollow. Where
 /// an odd number of sheets meet at an edge, those that end elsewhere, too, become parts that end there, with
-/// vertices of their own. Adds a sentence to `notes` for each kind of repair, and for an open mesh.
-/// Throws InputError at `place` for no triangles and surfaces with one side only.
+/// vertices of their own. A surface with one side only is cut where it comes back to itself. Adds a sentence
+/// to `notes` for each kind of repair, and for an open mesh. Throws InputError at `place` for no triangles.
 RepairedMesh repairMesh(TriangleMesh& mesh, const std::string& place, std::vector<std::string>& notes);
 
 // Normals for points that have none, or none that agree: planes through neighbours, whose sides are made to
@@ -104,8 +107,9 @@ struct XyzPoints {
   std::vector<Vec3f> normals;  ///< unit, or zero; none where the file has none
 };
 
-/// Takes comments from # on, and how many points follow in the first line. Returns what is wrong, as
-/// "expected ..., found ..."; empty where nothing is. Adds a sentence to `notes` for what is left out.
+/// Takes comments from # on, how many points follow in the first line, and the columns' names, x, y and z
+/// first, before the points. Returns what is wrong, as "expected ..., found ..."; empty where nothing is.
+/// Adds a sentence to `notes` for what is left out.
 std::string readXyz(std::string_view content, XyzPoints& points, std::vector<std::string>& notes);
 
 // STL files that others write: keywords in capitals, and counts of triangles that are wrong.

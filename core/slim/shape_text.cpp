@@ -164,6 +164,17 @@ Vec3d moveToOrigin(std::string& content, std::string_view ending) {
   return origin;
 }
 
+namespace {
+
+/// Whether a word of a heading names the axis: X, "x" or //X.
+bool names(std::string_view word, char axis) {
+  while (!word.empty() && (word.front() == '/' || word.front() == '"')) word.remove_prefix(1);
+  if (!word.empty() && word.back() == '"') word.remove_suffix(1);
+  return word.size() == 1 && (word[0] | 0x20) == axis;
+}
+
+}  // namespace
+
 std::string readXyz(std::string_view content, XyzPoints& points, std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 16;
   TextLines lines(content, 0, " \t\r\v\f,;");
@@ -174,6 +185,10 @@ std::string readXyz(std::string_view content, XyzPoints& points, std::vector<std
     std::array<double, kMost> numbers{};
     std::size_t count = 0;
     for (std::string_view word = lines.word(); !word.empty() && !word.starts_with('#'); word = lines.word()) {
+      // The names of the columns, before the first point.
+      if (width == 0 && count == 0 && names(word, 'x') && names(lines.word(), 'y') &&
+          names(lines.word(), 'z'))
+        break;
       if (count == kMost || !isNumber(word, numbers[count]))
         return "expected a line of numbers (x y z, or x y z nx ny nz) in " + lines.place() + ", found \"" +
                std::string(word.substr(0, 40)) + '"';

@@ -37,15 +37,21 @@ void suppressPush(StepState& state, std::size_t i, const Vec3f& came, const Vec3
 
 /// Puts particle i, which came from `from`, where it was at the start of the step or since, back on the fluid
 /// side, and books that.
-void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan, Push& push) {
+/// All that it calls is put in its place: most particles are done after the first lines.
+[[gnu::flatten]] void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan,
+                              Push& push) {
   Vec3f p = state.current[i].xyz();
-  // How far it may have to be from walls for them not to be in its way.
-  const float onTheWay = state.collisionWalls.empty() ? 0 : kSteepestDistance * (p - from.xyz()).norm();
-  if (knownClearance(state, i, p) >= kAmple * state.wallMargin() + onTheWay) return;
+  // Whether no wall can be in its way, for there is more room at one end than the way is long.
+  const float clearance = knownClearance(state, i, p);
+  const auto longerThan = [&](float room) {
+    return !(room >= kAmple * state.boundary.steepness() * (p - from.xyz()).norm());
+  };
+  const bool barred = !state.collisionWalls.empty() && longerThan(clearance - state.wallMargin()) &&
+                      longerThan(knownClearance(state, i, from.xyz()));
+  if (!barred && clearance >= kAmple * state.wallMargin()) return;
   if (!p.allFinite()) return;  // no wall has a place for it; the step is about to be refused
   const Vec3f came = p;
-  if (!state.collisionWalls.empty())
-    p = clipMove(state.collisionWalls, from.xyz(), stepBegan, p, state.wallMargin());
+  if (barred) p = clipMove(state.collisionWalls, from.xyz(), stepBegan, p, state.wallMargin());
   state.boundary.project(p, state.wallMargin());
   state.current[i].setXyz(p);
   if (p == came) return;
@@ -115,7 +121,8 @@ WallIndex collisionWalls(const Boundary& boundary, float supportRadius) {
 Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to, float margin) {
   Vec3f held = to, normal;
   const float length = (to - from).norm();
-  for (const Surface* wall : length < walls.reach() ? walls.near(from, length) : walls.all()) {
+  for (const auto& [wall, block] : length < walls.reach() ? walls.near(from, length) : walls.all()) {
+    if (block != nullptr && block->farther(from, (held - from).norm())) continue;
     const Vec3f start = stepBegan ? wall->carried(from) : from;
     float entry = 0;
     if (held == start || !wall->crosses(start, held, normal, entry)) continue;
@@ -125,42 +132,6 @@ Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const 
     held += (margin - (held - meets).dot(normal)) * normal;
   }
   return held;
-}
-
-void stages::separateNeighbours(StepState& state) {
-  /// A wall near a particle, and the plane that touches it nearest to the particle: points in front of the
-  /// plane are not hidden by a convex wall.
-  struct Near {
-    const Surface* wall;
-    Vec3f normal;
-    float offset;
-  };
-  const float reach = state.supportRadius;
-  parallelFor(state.pool, state.particles.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
-    std::vector<Near> inReach;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f p = state.current[i].xyz();
-      inReach.clear();
-      for (const Surface* wall : state.thinWalls.near(p)) {
-        Near near{wall, Vec3f::Zero(), std::numeric_limits<float>::infinity()};
-        if (wall->convex()) {
-          const float distance = wall->distance(p, near.normal);
-          if (distance >= reach) continue;
-          if (distance > 0) near.offset = near.normal.dot(p) - distance;
-        } else if (!wall->thinWithin(p, reach, reach)) {
-          continue;
-        }
-        inReach.push_back(near);
-      }
-      if (inReach.empty()) continue;
-      state.neighbours.keep(i, [&](std::size_t j) {
-        const Vec3f other = state.current[j].xyz();
-        return std::none_of(inReach.begin(), inReach.end(), [&](const Near& near) {
-          return near.normal.dot(other) <= near.offset && near.wall->hides(p, other);
-        });
-      });
-    }
-  });
 }
 
 }  // namespace migiwa

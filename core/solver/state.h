@@ -189,13 +189,9 @@ struct StepState : FluidState, StepBuffers, StepRecord {
 // A lower bound for a particle's distance from every wall, without evaluating the walls: what was measured
 // somewhere, less the way from there. Where that is enough, walls are not evaluated.
 
-/// A bound for how fast the distances of walls change along a way. Of true distances it is 1; those of
-/// splines and of SLIM surfaces overshoot a little about creases.
-constexpr float kSteepestDistance = 1.5F;
-
 /// A clearance (m) that is known at `there`, as known at p.
-inline float clearanceAt(const Vec3f& p, const Vec3f& there, float clearance) {
-  return clearance - kSteepestDistance * (p - there).norm();
+inline float clearanceAt(const Boundary& boundary, const Vec3f& p, const Vec3f& there, float clearance) {
+  return clearance - boundary.steepness() * (p - there).norm();
 }
 
 /// The least distance (m) to walls that particle i can have at p, by what its step began with and by its wall
@@ -204,10 +200,10 @@ inline float clearanceAt(const Vec3f& p, const Vec3f& there, float clearance) {
 inline float knownClearance(const StepState& state, std::size_t i, const Vec3f& p) {
   if (!state.boundary.steady()) return 0;
   const Float4& start = state.particles.position[i];
-  float clearance = clearanceAt(p, start.xyz(), start.w);
+  float clearance = clearanceAt(state.boundary, p, start.xyz(), start.w);
   if (const std::uint32_t slot = state.wallSlot[i]; slot != FluidState::kNoWall) {
     const WallSlot& wall = state.wallSlots[slot];
-    clearance = std::max(clearance, clearanceAt(p, wall.at.xyz(), wall.sample.distance));
+    clearance = std::max(clearance, clearanceAt(state.boundary, p, wall.at.xyz(), wall.sample.distance));
   }
   return std::max(clearance, 0.0F);
 }

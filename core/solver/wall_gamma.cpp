@@ -17,19 +17,25 @@ constexpr float kWatchReach = 1.5F;
 constexpr float kLinearReach = 0.05F;
 
 /// Evaluates the slots' samples at their points, a batch at a time. Without a method the distances alone.
-void evaluate(const StepState& state, std::span<WallSlot> slots) {
+void evaluate(const StepState& state, std::span<WallSlot* const> slots) {
   if (state.gammaMethod == nullptr) {
-    for (WallSlot& slot : slots) slot.sample.distance = state.boundary.distance(slot.at.xyz());
+    for (WallSlot* slot : slots) slot->sample.distance = state.boundary.distance(slot->at.xyz());
     return;
   }
   std::array<Float4, 64> points;
   std::array<GammaSample, 64> samples;
   for (std::size_t begin = 0; begin < slots.size(); begin += points.size()) {
     const std::size_t n = std::min(points.size(), slots.size() - begin);
-    for (std::size_t k = 0; k < n; ++k) points[k] = slots[begin + k].at;
+    for (std::size_t k = 0; k < n; ++k) points[k] = slots[begin + k]->at;
     state.gammaMethod->evaluate(std::span(points).first(n), std::span(samples).first(n));
-    for (std::size_t k = 0; k < n; ++k) slots[begin + k].sample = samples[k];
+    for (std::size_t k = 0; k < n; ++k) slots[begin + k]->sample = samples[k];
   }
+}
+
+void evaluate(const StepState& state, std::vector<WallSlot>& slots) {
+  std::vector<WallSlot*> all;
+  for (WallSlot& slot : slots) all.push_back(&slot);
+  evaluate(state, std::span<WallSlot* const>(all));
 }
 
 /// Takes what is known of a particle that is now at p along with the wall in its reach. False where a wall
@@ -62,7 +68,7 @@ bool carryAlong(const StepState& state, const Vec3f& p, WallSlot& slot) {
 void remember(StepState& state, const WallSlot& slot) {
   if (!state.boundary.steady()) return;
   Float4& start = state.particles.position[slot.particle];
-  start.w = std::max(start.w, clearanceAt(start.xyz(), slot.at.xyz(), slot.sample.distance));
+  start.w = std::max(start.w, clearanceAt(state.boundary, start.xyz(), slot.at.xyz(), slot.sample.distance));
 }
 
 float linearGamma(const WallSlot& slot, const Vec3f& moved, float supportRadius) {
@@ -143,17 +149,20 @@ void refreshGamma(StepState& state) {
   state.gammaFloored += parallelReduce(
       state.pool, state.wallSlots.size(), 0L,
       [&](std::size_t begin, std::size_t end) {
-        long floored = 0;
+        std::vector<WallSlot*> left;  // the neighbourhood of where they were evaluated
         for (std::size_t k = begin; k < end; ++k) {
           WallSlot& slot = state.wallSlots[k];
-          Vec3f moved = state.current[slot.particle].xyz() - slot.at.xyz();
-          if (moved.squaredNorm() > reach * reach) {
-            slot.at = state.current[slot.particle];
-            evaluate(state, {&slot, 1});
-            moved.setZero();
-          }
+          const Float4& now = state.current[slot.particle];
+          if (!((now.xyz() - slot.at.xyz()).squaredNorm() > reach * reach)) continue;
+          slot.at = now;
+          left.push_back(&slot);
+        }
+        evaluate(state, std::span<WallSlot* const>(left));
+        long floored = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          const WallSlot& slot = state.wallSlots[k];
           float& gamma = state.gamma[slot.particle];
-          gamma = linearGamma(slot, moved, state.supportRadius);
+          gamma = linearGamma(slot, state.current[slot.particle].xyz() - slot.at.xyz(), state.supportRadius);
           floored += floorGamma(state, gamma);
         }
         return floored;

@@ -118,9 +118,10 @@ class NeighbourLists {
   }
   /// Indices of the neighbours of i.
   NeighbourIndices of(std::size_t i) const { return NeighbourIndices(groups(i).first(count_[i])); }
-  /// Keeps those neighbours j of i for which kept(j). Lists of different particles can be thinned at once.
+  /// Keeps those neighbours j of i for which kept(j), asked in the order of the list. Lists of different
+  /// particles can be thinned at once.
   template <class Kept>
-  void keep(std::size_t i, const Kept& kept) {
+  void keep(std::size_t i, Kept kept) {
     std::uint32_t* const list = chunks_[i / kChunk].offsets.get() + start_[i];
     const std::uint32_t count = count_[i];
     std::uint32_t left = 0;

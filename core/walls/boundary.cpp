@@ -25,7 +25,7 @@ Boundary::Boundary(std::vector<std::shared_ptr<const Surface>> surfaces) : surfa
     moving_.push_back(std::make_shared<MovingSurface>(surface, group));
     surface = moving_.back();
   }
-  steady_ = standsSteadily();
+  measureSteadiness();
   near_ = WallIndex(pointers());
 }
 
@@ -35,15 +35,18 @@ std::vector<const Surface*> Boundary::pointers() const {
   return walls;
 }
 
-bool Boundary::standsSteadily() const {
-  return std::all_of(surfaces_.begin(), surfaces_.end(),
-                     [](const auto& surface) { return surface->steadyDistance(); });
+void Boundary::measureSteadiness() {
+  steady_ = std::all_of(surfaces_.begin(), surfaces_.end(),
+                        [](const auto& surface) { return surface->steadyDistance(); });
+  const bool exact = std::all_of(surfaces_.begin(), surfaces_.end(),
+                                 [](const auto& surface) { return surface->exact() == nullptr; });
+  steepness_ = exact ? kExactSlope : kSteepestDistance;
 }
 
 Boundary Boundary::atRest(std::vector<std::shared_ptr<const Surface>> surfaces) {
   Boundary boundary;
   boundary.surfaces_ = std::move(surfaces);
-  boundary.steady_ = boundary.standsSteadily();
+  boundary.measureSteadiness();
   boundary.near_ = WallIndex(boundary.pointers());
   return boundary;
 }
@@ -68,7 +71,8 @@ Vec3f Boundary::nearestVelocity(const Vec3f& p) const {
 float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
   float nearest = std::numeric_limits<float>::infinity();
   normal.setZero();
-  for (const Surface* surface : near(p)) {
+  for (const auto& [surface, block] : near(p)) {
+    if (block != nullptr && block->farther(p, nearest)) continue;
     Vec3f n;
     const float d = surface->distance(p, n);
     if (d < nearest) {
@@ -80,8 +84,18 @@ float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
 }
 
 float Boundary::distance(const Vec3f& p) const {
-  Vec3f normal;
-  return distance(p, normal);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  float nearest = kInfinity, squared = kInfinity;  // squared: of blocks that p is outside of
+  for (const auto& [surface, block] : near(p)) {
+    if (block != nullptr) {
+      const float own = block->squaredDistance(p);
+      squared = std::min(squared, own > 0 ? own : squared);
+      if (own > 0) continue;
+    }
+    Vec3f ignored;
+    nearest = std::min(nearest, surface->distance(p, ignored));
+  }
+  return std::min(nearest, std::sqrt(squared));
 }
 
 bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
@@ -95,7 +109,8 @@ bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
     Vec3f sum = Vec3f::Zero();
     int moves = 0;
     float farthest = 0;
-    for (const Surface* surface : near(p, margin)) {
+    for (const auto& [surface, block] : near(p, margin)) {
+      if (block != nullptr && block->farther(p, margin)) continue;
       const Vec3f before = p;
       if (!surface->project(p, margin)) continue;
       farthest = std::max(farthest, (p - before).norm());

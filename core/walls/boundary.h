@@ -35,12 +35,14 @@ class Boundary {
   /// Whether a distance measured once goes on to tell how near walls can be: they stand still, and
   /// Surface::steadyDistance() holds for all of them.
   bool steady() const { return steady_; }
+  /// A bound for how fast such a distance changes along a way.
+  float steepness() const { return steepness_; }
 
   /// Prepares near() for a reach (m): worth it before many questions are asked about many walls.
   void indexWalls(float reach) { near_ = WallIndex(pointers(), reach, true); }
   /// The walls that come nearer than `reach` (m) to p, and the nearest of all; some more, in the order of
   /// surfaces().
-  std::span<const Surface* const> near(const Vec3f& p, float reach = 0) const {
+  NearWalls near(const Vec3f& p, float reach = 0) const {
     return reach <= near_.reach() ? near_.near(p, reach) : near_.all();
   }
 
@@ -58,12 +60,13 @@ class Boundary {
  private:
   Vec3f nearestVelocity(const Vec3f& p) const;
   bool projectInTurn(Vec3f& p, float margin, bool& fits) const;
-  bool standsSteadily() const;
+  void measureSteadiness();
   std::vector<const Surface*> pointers() const;
 
   std::vector<std::shared_ptr<const Surface>> surfaces_;
   std::vector<std::shared_ptr<MovingSurface>> moving_;  ///< those among them that move
   bool steady_ = true;
+  float steepness_ = kExactSlope;
   WallIndex near_;
 };
 

@@ -54,6 +54,9 @@ void Box::prepare() {
   turned_ = toLocal_ != Eigen::Matrix3f::Identity();
   for (int index = 0; index < 8; ++index)
     corners_[static_cast<std::size_t>(index)] = corner(index).cast<float>();
+  upright_.reset();
+  if (fluid_ == Fluid::outside && !turned_)
+    upright_ = UprightBlock{center_, half_, corners_.front(), corners_.back()};
 }
 
 float Box::distance(const Vec3f& p, Vec3f& normal) const {

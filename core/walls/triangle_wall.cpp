@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "core/base/hash.h"
 #include "core/walls/mesh_wall.h"
@@ -21,6 +22,18 @@ constexpr float kOpposed = -0.7F;
 constexpr int kMostPlaces = 100;
 /// Cosine between two faces whose edge is drawn smooth.
 constexpr float kSmooth = 0.8F;
+
+/// The corners of the box that goes so far (m) beyond a triangle.
+std::pair<Vec3f, Vec3f> boxAround(const WallTriangle& triangle, float beyond) {
+  const std::array<Vec3f, 3>& t = triangle.corners;
+  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]) - Vec3f::Constant(beyond),
+          t[0].cwiseMax(t[1]).cwiseMax(t[2]) + Vec3f::Constant(beyond)};
+}
+
+/// Whether one can be the other side of the solid behind the other.
+bool faceEachOther(const WallTriangle& one, const WallTriangle& other) {
+  return !one.sheet && one.normal.dot(other.normal) <= kOpposed;
+}
 
 }  // namespace
 
@@ -60,9 +73,7 @@ bool TriangleWall::standsAlone(std::uint32_t triangle, bool behind) const {
            (reaches(other, own, 1) || (other.sheet && reaches(other, own, -1)));
   };
   // Of one support: all that a point sees of the wall together with this triangle.
-  const Vec3f reach = Vec3f::Constant(2 * supportRadius_);
-  const Vec3f low = own.corners[0].cwiseMin(own.corners[1]).cwiseMin(own.corners[2]) - reach,
-              high = own.corners[0].cwiseMax(own.corners[1]).cwiseMax(own.corners[2]) + reach;
+  const auto [low, high] = boxAround(own, 2 * supportRadius_);
   return !tree_->visitBox(low, high,
                           [&](std::uint32_t k) { return k != triangle && mayHide(tree_->triangles()[k]); });
 }
@@ -82,6 +93,11 @@ void TriangleWall::facets(const Vec3f& p, float supportRadius, std::vector<WallF
 
 float TriangleWall::thicknessBehind(const WallTriangle& triangle) const {
   if (supportRadius_ <= 0) return kInfinity;
+  // Where nothing near looks the other way, no ray has to.
+  const auto [low, high] = boxAround(triangle, supportRadius_);
+  if (!tree_->visitBox(low, high,
+                       [&](std::uint32_t k) { return faceEachOther(tree_->triangles()[k], triangle); }))
+    return kInfinity;
   const Vec3f one = triangle.corners[1] - triangle.corners[0],
               other = triangle.corners[2] - triangle.corners[0];
   const float longest = std::max({one.norm(), other.norm(), (one - other).norm()});
@@ -97,7 +113,7 @@ float TriangleWall::thicknessBehind(const WallTriangle& triangle) const {
       const Vec3f to = from - supportRadius_ * triangle.normal;
       tree_->visitWay(from, to, [&](std::uint32_t k) {
         const WallTriangle& behind = tree_->triangles()[k];
-        if (behind.sheet || behind.normal.dot(triangle.normal) > kOpposed) return;
+        if (!faceEachOther(behind, triangle)) return;
         const float at = meetingOf(behind, from, to);
         if (at >= 0) least = std::min(least, (at + kOnPlane) * supportRadius_);
       });

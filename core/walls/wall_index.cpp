@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace migiwa {
 
@@ -14,20 +15,29 @@ constexpr std::size_t kFew = 8;
 /// Cells along the reach, if they are not more than kMostCells in all.
 constexpr float kCellsPerReach = 2;
 constexpr double kMostCells = 2e6;
-/// How much faster than a point a distance may change: those from a grid are a little too steep in places.
-constexpr float kExactSlope = 1.001F, kGriddedSlope = 1.5F;
 
 float slopeOf(const Surface& wall) {
-  return wall.exact() != nullptr ? kGriddedSlope : kExactSlope;
+  return wall.exact() != nullptr ? kSteepestDistance : kExactSlope;
 }
 
 }  // namespace
 
-WallIndex::WallIndex(std::vector<const Surface*> walls, float reach, bool nearestToo)
-    : walls_(std::move(walls)), reach_(reach) {
+WallIndex::WallIndex(const std::vector<const Surface*>& walls) : all_(walls.size()) {
+  std::iota(all_.begin(), all_.end(), 0U);
+  std::vector<UprightBlock> blocks;
+  for (const Surface* wall : walls)
+    if (const UprightBlock* block = wall->upright()) blocks.push_back(*block);
+  blocks_ = std::make_shared<const std::vector<UprightBlock>>(std::move(blocks));
+  const UprightBlock* next = blocks_->data();
+  for (const Surface* wall : walls) walls_.push_back({wall, wall->upright() != nullptr ? next++ : nullptr});
+}
+
+WallIndex::WallIndex(const std::vector<const Surface*>& walls, float reach, bool nearestToo)
+    : WallIndex(walls) {
+  reach_ = reach;
   if (walls_.size() <= kFew) return;
   Bounds bounds;
-  for (const Surface* wall : walls_) bounds.include(wall->bounds());
+  for (const Surface* wall : walls) bounds.include(wall->bounds());
   if (bounds.empty()) return;
   bounds = bounds.grown(2 * static_cast<double>(reach));
   const Vec3d extent = bounds.size();
@@ -39,20 +49,22 @@ WallIndex::WallIndex(std::vector<const Surface*> walls, float reach, bool neares
   size_ = (extent / edge).array().floor().cast<int>() + 1;
   cells_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                 static_cast<std::size_t>(size_.z()));
-  fill({Eigen::Vector3i::Zero(), size_}, walls_, nearestToo);
-  std::copy_if(walls_.begin(), walls_.end(), std::back_inserter(beyond_), [&](const Surface* wall) {
-    return nearestToo || !wall->steadyDistance() || wall->bounds().empty();
+  Known known;
+  fill({Eigen::Vector3i::Zero(), size_}, all_, nearestToo, known);
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(beyond_), [&](std::uint32_t k) {
+    return nearestToo || !walls[k]->steadyDistance() || walls[k]->bounds().empty();
   });
 }
 
-void WallIndex::fill(const Block& block, const std::vector<const Surface*>& candidates, bool nearestToo) {
+void WallIndex::fill(const Block& block, const List& candidates, bool nearestToo, Known& known) {
   const Vec3f low = origin_ + cell_ * block.low.cast<float>(),
               high = origin_ + cell_ * block.high.cast<float>();
   const Vec3f middle = 0.5F * (low + high);
   const float around = 0.5F * (high - low).norm();
   std::vector<float> least;  // that a point of the block can be from each
   float most = std::numeric_limits<float>::infinity();
-  for (const Surface* wall : candidates) {
+  for (const std::uint32_t k : candidates) {
+    const Surface* const wall = walls_[k];
     if (!wall->steadyDistance()) {
       least.push_back(-std::numeric_limits<float>::infinity());
       continue;
@@ -64,28 +76,33 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
   }
   const auto within = [&](float reach) {
     const float wanted = nearestToo ? std::max(most, reach) : reach;
-    std::vector<const Surface*> kept;
+    List kept;
     for (std::size_t k = 0; k < candidates.size(); ++k)
       if (least[k] <= wanted) kept.push_back(candidates[k]);
     return kept;
   };
-  const std::vector<const Surface*> kept = within(reach_);
+  const List kept = within(reach_);
 
   const Eigen::Vector3i size = block.high - block.low;
   int axis = 0;
   if (size.maxCoeff(&axis) > 1 && kept.size() > 1) {
     Block one = block, other = block;
     one.high[axis] = other.low[axis] = block.low[axis] + size[axis] / 2;
-    fill(one, kept, nearestToo);
-    fill(other, kept, nearestToo);
+    fill(one, kept, nearestToo, known);
+    fill(other, kept, nearestToo, known);
     return;
   }
-  Range range;
-  range.begin = static_cast<std::uint32_t>(listed_.size());
-  for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    const std::vector<const Surface*> some = within(kLevels[level] * reach_);
-    range.counts[level] = static_cast<std::uint32_t>(some.size());
-    listed_.insert(listed_.end(), some.begin(), some.end());
+  std::array<List, kLevels.size()> lists;
+  for (std::size_t level = 0; level < kLevels.size(); ++level) lists[level] = within(kLevels[level] * reach_);
+  const auto [entry, isNew] = known.try_emplace(std::move(lists), static_cast<std::uint32_t>(ranges_.size()));
+  if (isNew) {
+    Range& range = ranges_.emplace_back();
+    range.begin = static_cast<std::uint32_t>(listed_.size());
+    for (std::size_t level = 0; level < kLevels.size(); ++level) {
+      const List& list = entry->first[level];
+      range.counts[level] = static_cast<std::uint32_t>(list.size());
+      listed_.insert(listed_.end(), list.begin(), list.end());
+    }
   }
   for (int z = block.low.z(); z < block.high.z(); ++z)
     for (int y = block.low.y(); y < block.high.y(); ++y)
@@ -93,21 +110,22 @@ void WallIndex::fill(const Block& block, const std::vector<const Surface*>& cand
         cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) +
                 static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(size_.x()) +
-               static_cast<std::size_t>(x)] = range;
+               static_cast<std::size_t>(x)] = entry->second;
 }
 
-std::span<const Surface* const> WallIndex::near(const Vec3f& p, float reach) const {
-  if (cells_.empty()) return walls_;
+NearWalls WallIndex::near(const Vec3f& p, float reach) const {
+  if (cells_.empty()) return all();
   const Vec3f at = inverseCell_ * (p - origin_);
-  if (!((at.array() >= 0).all() && (at.array() < size_.cast<float>().array()).all())) return beyond_;
+  if (!((at.array() >= 0).all() && (at.array() < size_.cast<float>().array()).all()))
+    return {walls_.data(), beyond_};
   const Eigen::Vector3i cell = at.cast<int>();
-  const Range& range = cells_[(static_cast<std::size_t>(cell.z()) * static_cast<std::size_t>(size_.y()) +
-                               static_cast<std::size_t>(cell.y())) *
-                                  static_cast<std::size_t>(size_.x()) +
-                              static_cast<std::size_t>(cell.x())];
+  const std::size_t row = static_cast<std::size_t>(cell.z()) * static_cast<std::size_t>(size_.y()) +
+                          static_cast<std::size_t>(cell.y());
+  const Range& range =
+      ranges_[cells_[row * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(cell.x())]];
   std::size_t level = 0, begin = range.begin;
   while (level + 1 < kLevels.size() && reach > kLevels[level] * reach_) begin += range.counts[level++];
-  return std::span(listed_).subspan(begin, range.counts[level]);
+  return {walls_.data(), std::span(listed_).subspan(begin, range.counts[level])};
 }
 
 }  // namespace migiwa

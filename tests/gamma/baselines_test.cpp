@@ -9,6 +9,7 @@
 #include "core/gamma/gamma_method.h"
 #include "core/sph/kernels.h"
 #include "core/walls/shapes.h"
+#include "tests/gamma/gamma_reference.h"
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {
@@ -16,9 +17,8 @@ namespace {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
-constexpr float kSpacing = 0.05F, kSupport = 0.1F;
-constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
-                              KernelType::wendlandC2};
+using reference::kKernels;
+constexpr float kSpacing = 0.05F, kSupport = static_cast<float>(reference::kSupport);
 
 Boundary floorWall() {
   return Boundary(Surfaces{std::make_shared<Plane>(Vec3d::Zero(), Vec3d(0, 1, 0))});

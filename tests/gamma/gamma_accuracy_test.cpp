@@ -14,9 +14,8 @@ namespace {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
-constexpr double kSupport = 0.1;
-constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
-                              KernelType::wendlandC2};
+using reference::kKernels;
+using reference::kSupport;
 
 /// Points in units of the support radius, with the gamma there, and its gradient at some.
 struct Case {

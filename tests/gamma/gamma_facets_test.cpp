@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/gamma/batches.h"
 #include "core/gamma/gamma_method.h"
 #include "core/walls/mesh_wall.h"
 #include "core/walls/shapes.h"
@@ -18,9 +19,8 @@ namespace {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
-constexpr double kSupport = 0.1;
-constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
-                              KernelType::wendlandC2};
+using reference::kKernels;
+using reference::kSupport;
 
 std::vector<GammaSample> samplesOf(const Boundary& boundary, std::string_view method, KernelType kernel,
                                    const std::vector<Vec3d>& places, int directions = 1024) {
@@ -183,6 +183,61 @@ TEST(GammaFacets, PostsOnAFloorAndInACorner) {
              {-1, 0, -1}, {1, 0.8, 1});
   expectThin("post through a floor, at a wall", {{{-0.2, -0.3, -0.2}, {0.2, 0.5, 0.2}}}, {floor, wall},
              {{Vec3d::UnitY(), 0}, {inwards, -0.6 * inwards.x()}}, {-0.6, 0, -1}, {1, 0.9, 1});
+}
+
+TEST(GammaFacets, InThePlaneOfAFaceThatFaceHidesNothing) {
+  const std::vector<BoxAt> boxes{{{0, -3, -1.1}, {0.33, 1.2, -0.76}}, {{0, -3, 0.51}, {0.46, 1.2, 0.97}}};
+  const std::vector<Vec3d> points{{3e-4, 0, 0}, {1e-4, 0.2, 0.1}, {-2e-4, 0, 0}, {0.33, 0, 0.05}};
+  const auto fluid = [&](const auto& table, const Vec3d& p, const Vec3d& w) {
+    return table(firstOf(boxes, p, w));
+  };
+  const Errors errors =
+      errorsOf("in a face's plane", boundaryOf(boxes), KernelType::poly6, points, 4, 0, fluid);
+  EXPECT_LT(errors.gamma, 1e-3);
+}
+
+/// What the short way about upright blocks gives, where it gives something, is what facets give to the last
+/// bit. Returns the share of points for which it does; it leaves those that only a floor is in reach of.
+double shareOfTheShortWay(const std::vector<BoxAt>& boxes, const Surfaces& more, KernelType kernel) {
+  const Boundary boundary = boundaryOf(boxes, more);
+  const std::vector<Vec3d> places = pointsNear(boundary, 640, {-1.2, 0, -1.2}, {1.2, 1.2, 1.2});
+  std::vector<Float4> points;
+  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  std::vector<GammaSample> found(points.size());
+  std::vector<std::size_t> others;
+  makeBlockGamma({boundary, kernel, static_cast<float>(kSupport)})->evaluate(points, found, others);
+  const std::vector<GammaSample> expected = samplesOf(boundary, "facets", kernel, places);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    EXPECT_EQ(found[k].distance, expected[k].distance);
+    if (std::find(others.begin(), others.end(), k) != others.end()) continue;
+    EXPECT_EQ(found[k].gamma, expected[k].gamma) << places[k].transpose();
+    EXPECT_EQ(found[k].gradient, expected[k].gradient) << places[k].transpose();
+    EXPECT_EQ(found[k].pairGradient, expected[k].pairGradient) << places[k].transpose();
+  }
+  return 1 - static_cast<double>(others.size()) / static_cast<double>(points.size());
+}
+
+TEST(GammaFacets, AboutUprightBlocksTheShortWayIsTheSameToTheLastBit) {
+  const auto floor = std::make_shared<Plane>(Vec3d::Zero(), Vec3d::UnitY());
+  const auto tank = std::make_shared<Box>(kSupport * Vec3d(-1.5, 0, -1.5), kSupport * Vec3d(1.5, 3, 1.5),
+                                          Box::Fluid::inside);
+  const std::vector<BoxAt> post{{{-0.2, 0, -0.2}, {0.2, 2, 0.2}}},
+      posts{{{-0.9, 0, -0.9}, {-0.6, 2, -0.5}},
+            {{0.5, 0, -0.8}, {0.9, 0.7, -0.4}},
+            {{-0.2, 0, 0.6}, {0.2, 2, 0.9}}},
+      cubes{{{-0.9, 0.2, -0.9}, {-0.6, 0.5, -0.5}},
+            {{0.1, 0.6, -0.1}, {0.4, 0.9, 0.2}},
+            {{0.6, 0.1, 0.5}, {0.8, 0.3, 0.8}}};
+  for (const KernelType kernel : kKernels) {
+    EXPECT_GT(shareOfTheShortWay(post, {}, kernel), 0.95);
+    EXPECT_GT(shareOfTheShortWay(post, {floor}, kernel), 0.8);
+    EXPECT_GT(shareOfTheShortWay(posts, {tank}, kernel), 0.8);
+    EXPECT_GT(shareOfTheShortWay(cubes, {}, kernel), 0.8);
+  }
+  // One that stands before another is left to facets, and so is one that is turned or thick.
+  EXPECT_LT(shareOfTheShortWay({{{-0.5, -3, 0.2}, {0.5, 3, 0.3}}, {{-0.5, -3, 0.5}, {0.5, 3, 0.6}}}, {},
+                               KernelType::poly6),
+            0.8);
 }
 
 TEST(GammaFacets, ObliqueWedges) {

@@ -7,15 +7,15 @@
 
 #include "core/gamma/gamma_method.h"
 #include "core/walls/shapes.h"
+#include "tests/gamma/gamma_reference.h"
 
 namespace migiwa {
 namespace {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
-constexpr float kSupport = 0.1F;
-constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
-                              KernelType::wendlandC2};
+using reference::kKernels;
+constexpr auto kSupport = static_cast<float>(reference::kSupport);
 
 PickedGamma make(const Boundary& boundary, std::string_view method, KernelType kernel = KernelType::poly6) {
   const auto names = gammaMethodNames();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +14,10 @@
 #include "tests/sph/quadrature.h"
 
 namespace migiwa::reference {
+
+inline constexpr double kSupport = 0.1;  ///< of the tests' particles (m)
+inline constexpr std::array kKernels{KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
+                                     KernelType::wendlandC2};
 
 /// The kernels as their papers write them.
 inline double kernel(KernelType type, double q) {

@@ -168,7 +168,8 @@ TEST_F(ShapeFormats, ReadsXyzClouds) {
     return out.str();
   };
   for (const bool normals : {true, false})
-    for (const std::string before : {"", "1000\n"}) {
+    for (const std::string before :
+         {"", "1000\n", "x,y,z\n", "//X Y Z Nx Ny Nz\n", "\n\"x\";\"y\";\"z\"\n"}) {
       const ImportedShape shape =
           importShape(write("ball.xyz", before + text(0, normals, before.empty() ? " " : ", ")));
       EXPECT_TRUE(shape.closed);
@@ -181,6 +182,10 @@ TEST_F(ShapeFormats, ReadsXyzClouds) {
   for (const OrientedPoint& p : far.cloud.points) ASSERT_NEAR(p.position.norm(), 1, 1e-5F);
   EXPECT_EQ(faultOf(write("word.xyz", "0 0 0\n1 0 O\n")),
             "expected a line of numbers (x y z, or x y z nx ny nz) in line 2, found \"O\"");
+  EXPECT_EQ(faultOf(write("late.xyz", "0 0 0\nx y z\n")),
+            "expected a line of numbers (x y z, or x y z nx ny nz) in line 2, found \"x\"");
+  EXPECT_EQ(faultOf(write("other.xyz", "x z y\n0 0 0\n")),
+            "expected a line of numbers (x y z, or x y z nx ny nz) in line 1, found \"x\"");
   EXPECT_EQ(faultOf(write("short.xyz", "0 0 0\n1 0\n")),
             "expected 3 numbers in line 2, as in the lines before, found 2");
   EXPECT_EQ(faultOf(write("two.xyz", "0 0\n")),

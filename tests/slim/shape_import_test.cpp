@@ -79,6 +79,18 @@ TEST_F(ShapeImport, AHollowIsAPartWithinAnotherThatFacesTheOtherWay) {
   const ImportedShape solid = importShape(write("solid.obj", outer + inner + kCubeFaces + outwards));
   ASSERT_EQ(solid.notes.size(), 1U);
   EXPECT_TRUE(solid.notes[0].starts_with("1 part lies within others and face outwards"));
+  // An island in a hollow is one, and nothing needs to be turned.
+  std::string island, islandFaces;
+  for (const char* corner : {"1.25 1.25 1.25", "1.75 1.25 1.25", "1.75 1.75 1.25", "1.25 1.75 1.25",
+                             "1.25 1.25 1.75", "1.75 1.25 1.75", "1.75 1.75 1.75", "1.25 1.75 1.75"})
+    island += std::string("v ") + corner + "\n";
+  for (const char* face :
+       {"17 20 19 18", "21 22 23 24", "17 18 22 21", "19 20 24 23", "18 19 23 22", "17 21 24 20"})
+    islandFaces += std::string("f ") + face + "\n";
+  const ImportedShape within =
+      importShape(write("island.obj", outer + inner + island + kCubeFaces + inwards + islandFaces));
+  EXPECT_NEAR(volumeOf(within.mesh), 26.125, 1e-5);
+  EXPECT_TRUE(within.notes.empty()) << within.notes.front();
 }
 
 TEST_F(ShapeImport, PartsMayTouch) {
@@ -200,7 +212,7 @@ TEST_F(ShapeImport, TurnsAClosedPartBesideAnOpenOneOutwards) {
   EXPECT_NEAR(volumeOf(importShape(write("both.obj", kCubeVertices + sheet + inwards)).mesh), 1, 1e-6);
 }
 
-TEST_F(ShapeImport, RefusesAMoebiusStrip) {
+TEST_F(ShapeImport, AMoebiusStripIsASheetAndFitsNothing) {
   std::string text;
   constexpr int kSteps = 12;
   for (int k = 0; k < kSteps; ++k) {
@@ -218,8 +230,15 @@ TEST_F(ShapeImport, RefusesAMoebiusStrip) {
     text += "f " + std::to_string(a) + " " + std::to_string(c) + " " + std::to_string(d) + "\nf " +
             std::to_string(a) + " " + std::to_string(d) + " " + std::to_string(b) + "\n";
   }
-  EXPECT_TRUE(faultOf(write("moebius.obj", text))
-                  .starts_with("expected a surface with two sides, found one like a Moebius strip"));
+  const ImportedShape shape = importShape(write("moebius.obj", text));
+  EXPECT_FALSE(shape.closed);
+  EXPECT_EQ(shape.mesh.triangles.size(), 2U * kSteps);
+  EXPECT_TRUE(shape.rim.starts_with(std::to_string(2 * kSteps) + " edges have a triangle on one side only"))
+      << shape.rim;
+  ASSERT_TRUE(shape.branching);
+  EXPECT_TRUE(shape.branching->message.starts_with(
+      "expected a surface with two sides, found one like a Moebius strip at ("));
+  EXPECT_THROW(fitPoints(shape, 0), InputError);
 }
 
 std::string cloudText(const std::vector<OrientedPoint>& points, bool normals) {
