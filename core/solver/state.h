@@ -180,7 +180,7 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   float wallPush(std::size_t i) const {
     return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
-  /// What the sum of the neighbours is divided by: gamma, and with a projection that of a resting lattice.
+  /// What the sum of the neighbours is divided by: gamma, and with a projection what fluid at rest has of it.
   float densityGamma(float g) const { return projects() ? g * lattice.besideWalls(g) : g; }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }

@@ -73,23 +73,23 @@ TEST(KinematicViscosity, AShearWaveDecaysAsItMust) {
         << along.transpose();
 }
 
-// Translation, rotation, shear and expansion at once, surfaces included; edges and corners of the free cube
-// have too few neighbours to tell.
+// Translation, rotation, shear and expansion at once, surfaces included. Edges and corners of the cube have
+// too few neighbours to tell, and so have drops at the surface of the stirred one.
 TEST(AffineXsph, SparesWhatIsLinearInSpace) {
   Eigen::Matrix3f gradient;
   gradient << 0.3F, -2, 0.7F, 1.5F, -0.8F, 0.4F, -0.2F, 0.9F, 0.6F;
   const auto field = [&](const Vec3f& x) { return Vec3f(gradient * x + Vec3f(1, -2, 3)); };
-  for (const std::vector<Vec3f>& places : {stirredCube(), latticePlaces(8, 0.4F)}) {
-    FreeFluid fluid(places, field);
+  for (const bool stirred : {true, false}) {
+    FreeFluid fluid(stirred ? stirredCube() : latticePlaces(14, 0.4F), field);
     const Particles& particles = fluid.state().particles;
     fluid.changeVelocities(R"({"viscosity": {"xsph": 0, "affine_xsph": 1}})");
-    Vec3f size = Vec3f::Zero();
-    for (const Float4& p : particles.position) size = size.cwiseMax(p.xyz().cwiseAbs());
-    const Vec3f rim = size - Vec3f::Constant(4.5F * static_cast<float>(kSpacing));
+    float half = 0;
+    for (const Float4& p : particles.position) half = std::max(half, std::abs(p.x));
+    const float rim = half - 4.5F * static_cast<float>(kSpacing);
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const Vec3f x = particles.position[i].xyz();
-      if ((x.cwiseAbs().array() > rim.array()).count() > 1) continue;
-      EXPECT_LT((particles.velocity[i].xyz() - field(x)).norm(), 2e-5F) << x.transpose();
+      if ((x.cwiseAbs().array() > rim).count() > 1 || (stirred && x.y() > rim)) continue;
+      EXPECT_LT((particles.velocity[i].xyz() - field(x)).norm(), 5e-5F) << x.transpose();
     }
     // What plain XSPH does to the same field.
     fluid.changeVelocities(R"({"viscosity": {"xsph": 1}})");
