@@ -91,9 +91,9 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     }
     const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, divergence);
     const Float4 sums = sumLanes(sumX, sumY, sumZ, pushes);
-    const float gamma = state.gamma[i], resting = state.densityGamma(gamma);
+    const float gamma = state.gamma[i];
     float density = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
-    density = added ? density + 1 - resting : density / resting;
+    density = added ? density + 1 - gamma : density / gamma;
     float source = slope * rest.w + toGap * gamma * std::min(density - 1, 0.0F);
     Vec3f missing = slope * scale.inverseSupport * sums.xyz();
     if (state.wallSlot[i] != FluidState::kNoWall) {

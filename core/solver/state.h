@@ -178,10 +178,8 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
   /// times the constraint's derivative with respect to gamma.
   float wallPush(std::size_t i) const {
-    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
+    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / gamma[i];
   }
-  /// What the sum of the neighbours is divided by: gamma, and with a projection what fluid at rest has of it.
-  float densityGamma(float g) const { return projects() ? g * lattice.besideWalls(g) : g; }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }
 };
