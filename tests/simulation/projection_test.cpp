@@ -32,7 +32,7 @@ Scene standingWave(double spacing, double timeStep) {
   scene.particleSpacing = spacing;
   scene.solver.timeStep = timeStep;
   scene.gravity = {0, -9.81, 0};
-  scene.effects = effectsOf(R"({"viscosity": {"xsph": 0, "affine_xsph": 0.3}})");
+  scene.effects = effectsOf(R"({"viscosity": {"xsph": 0.05}})");
   addTank(scene, Vec3d::Zero(), {1, 1, 0.2});
   const long columns = std::lround(1 / spacing);
   for (long k = 0; k < columns; ++k) {
