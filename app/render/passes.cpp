@@ -138,29 +138,24 @@ void NodePass::draw() const {
   glDisable(GL_CLIP_DISTANCE0);
 }
 
-namespace {
-
-struct Vertex {
-  Vec3f position, normal;
-};
-static_assert(sizeof(Vertex) == 6 * sizeof(float), "no padding");
-
-}  // namespace
-
-SurfacePass::SurfacePass()
-    : program_("surface"), vertices_(makeBuffer()), indices_(makeBuffer()), layout_(makeVertexArray()) {
-  glVertexArrayVertexBuffer(layout_.name(), 0, vertices_.name(), 0, sizeof(Vertex));
-  glVertexArrayElementBuffer(layout_.name(), indices_.name());
+void describeMesh(const GlVertexArray& layout, const GlBuffer& vertices, const GlBuffer& indices) {
+  glVertexArrayVertexBuffer(layout.name(), 0, vertices.name(), 0, sizeof(MeshVertex));
+  glVertexArrayElementBuffer(layout.name(), indices.name());
   for (const GLuint attribute : {0U, 1U}) {
-    glEnableVertexArrayAttrib(layout_.name(), attribute);
-    glVertexArrayAttribFormat(layout_.name(), attribute, 3, GL_FLOAT, GL_FALSE,
+    glEnableVertexArrayAttrib(layout.name(), attribute);
+    glVertexArrayAttribFormat(layout.name(), attribute, 3, GL_FLOAT, GL_FALSE,
                               static_cast<GLuint>(sizeof(Vec3f)) * attribute);
-    glVertexArrayAttribBinding(layout_.name(), attribute, 0);
+    glVertexArrayAttribBinding(layout.name(), attribute, 0);
   }
 }
 
+SurfacePass::SurfacePass()
+    : program_("surface"), vertices_(makeBuffer()), indices_(makeBuffer()), layout_(makeVertexArray()) {
+  describeMesh(layout_, vertices_, indices_);
+}
+
 void SurfacePass::set(std::span<const WallMesh> meshes) {
-  std::vector<Vertex> vertices;
+  std::vector<MeshVertex> vertices;
   std::vector<GLuint> indices;
   for (const bool vessels : {false, true}) {
     for (const WallMesh& mesh : meshes) {
@@ -174,7 +169,7 @@ void SurfacePass::set(std::span<const WallMesh> meshes) {
     (vessels ? vesselIndices_ : solidIndices_) =
         static_cast<GLsizei>(indices.size()) - (vessels ? solidIndices_ : 0);
   }
-  glNamedBufferData(vertices_.name(), static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+  glNamedBufferData(vertices_.name(), static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
                     vertices.data(), GL_DYNAMIC_DRAW);
   glNamedBufferData(indices_.name(), static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)), indices.data(),
                     GL_DYNAMIC_DRAW);

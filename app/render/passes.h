@@ -13,6 +13,15 @@
 
 namespace migiwa {
 
+/// Of a mesh that is lit.
+struct MeshVertex {
+  Vec3f position, normal;
+};
+static_assert(sizeof(MeshVertex) == 6 * sizeof(float), "no padding");
+
+/// Tells `layout` that position and normal are its attributes 0 and 1, and where they and the indices are.
+void describeMesh(const GlVertexArray& layout, const GlBuffer& vertices, const GlBuffer& indices);
+
 // Particles as lit spheres: one camera-facing quad each, the sphere found by ray in the fragment shader.
 
 class SpherePass {

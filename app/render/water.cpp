@@ -10,11 +10,6 @@
 namespace migiwa {
 namespace {
 
-struct WaterVertex {
-  Vec3f position, normal;
-};
-static_assert(sizeof(WaterVertex) == 6 * sizeof(float), "no padding");
-
 /// Faces to walls that turn by less than this are parts of one smooth wall (cosine).
 constexpr float kSmooth = 0.8F, kSame = 0.9999F;
 
@@ -26,7 +21,7 @@ constexpr GLsizei kLevels = 5;
 /// Faces to walls with vertices of their own, whose normals are means over the faces around them that are of
 /// the same side of the wall: the mesh's own normals belong to the free surface where that ends at a wall.
 struct WetFaces {
-  std::vector<WaterVertex> vertices;
+  std::vector<MeshVertex> vertices;
   std::vector<GLuint> corners;
 };
 WetFaces wetFaces(const SurfaceMesh& mesh) {
@@ -97,18 +92,11 @@ WaterPass::WaterPass()
       vertices_(makeBuffer()),
       indices_(makeBuffer()),
       layout_(makeVertexArray()) {
-  glVertexArrayVertexBuffer(layout_.name(), 0, vertices_.name(), 0, sizeof(WaterVertex));
-  glVertexArrayElementBuffer(layout_.name(), indices_.name());
-  for (const GLuint attribute : {0U, 1U}) {
-    glEnableVertexArrayAttrib(layout_.name(), attribute);
-    glVertexArrayAttribFormat(layout_.name(), attribute, 3, GL_FLOAT, GL_FALSE,
-                              static_cast<GLuint>(sizeof(Vec3f)) * attribute);
-    glVertexArrayAttribBinding(layout_.name(), attribute, 0);
-  }
+  describeMesh(layout_, vertices_, indices_);
 }
 
 void WaterPass::set(const SurfaceMesh& mesh) {
-  std::vector<WaterVertex> vertices;
+  std::vector<MeshVertex> vertices;
   std::vector<GLuint> indices;
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
     vertices.push_back({mesh.positions[k], mesh.normals[k]});
@@ -119,7 +107,7 @@ void WaterPass::set(const SurfaceMesh& mesh) {
   for (const GLuint corner : wet.corners) indices.push_back(static_cast<GLuint>(vertices.size()) + corner);
   vertices.insert(vertices.end(), wet.vertices.begin(), wet.vertices.end());
   wetIndices_ = static_cast<GLsizei>(indices.size()) - freeIndices_;
-  glNamedBufferData(vertices_.name(), static_cast<GLsizeiptr>(vertices.size() * sizeof(WaterVertex)),
+  glNamedBufferData(vertices_.name(), static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
                     vertices.data(), GL_STREAM_DRAW);
   glNamedBufferData(indices_.name(), static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)), indices.data(),
                     GL_STREAM_DRAW);

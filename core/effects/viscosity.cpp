@@ -44,6 +44,13 @@ struct GradientSums {
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
+/// What forPairs() does with the sums of a particle: its velocity becomes that of `before` and `scale` times
+/// them.
+HWY_INLINE auto addSums(StepState& state, const Float4* before, float scale) {
+  return [&state, before, scale](std::size_t i, const Float4& sums)
+             HWY_ATTR { state.particles.velocity[i] = Float4(Vec3f(before[i].xyz() + scale * sums.xyz())); };
+}
+
 /// `before`: the velocities, with the ghost's.
 template <class Kernel>
 void smoothRange(StepState& state, const Float4* before, float scale, std::size_t begin, std::size_t end) {
@@ -66,11 +73,8 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
     }
     return sumLanes(x, y, z, hn::Zero(d));
   };
-  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    state.particles.velocity[i] =
-        Float4(Vec3f(before[i].xyz() + scale * KernelVectors<Kernel>::kValue * sums.xyz()));
-  };
-  forPairs(positions, pairScale, begin, end, sumOf, use);
+  forPairs(positions, pairScale, begin, end, sumOf,
+           addSums(state, before, scale * KernelVectors<Kernel>::kValue));
 }
 
 /// The rows of the velocity gradient L (1/s) of the particles; `before`: the velocities, with the ghost's.
@@ -156,11 +160,8 @@ void smoothAffineRange(StepState& state, const Float4* before, const AffineRows&
     }
     return sumLanes(x, y, z, hn::Zero(d));
   };
-  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
-    state.particles.velocity[i] =
-        Float4(Vec3f(before[i].xyz() + scale * KernelVectors<Kernel>::kValue * sums.xyz()));
-  };
-  forPairs(positions, pairScale, begin, end, sumOf, use);
+  forPairs(positions, pairScale, begin, end, sumOf,
+           addSums(state, before, scale * KernelVectors<Kernel>::kValue));
 }
 
 void smoothAffineOfRange(StepState& state, const Float4* before, const AffineRows& rows, float scale,

@@ -41,7 +41,7 @@ void suppressPush(StepState& state, std::size_t i, const Vec3f& came, const Vec3
 [[gnu::flatten]] void project(StepState& state, std::size_t i, const Float4& from, bool stepBegan,
                               Push& push) {
   Vec3f p = state.current[i].xyz();
-  // Whether no wall can be in its way, for there is more room at one end than the way is long.
+  // A wall may be in its way unless there is more room at one end than the way is long.
   const float clearance = knownClearance(state, i, p);
   const auto longerThan = [&](float room) {
     return !(room >= kAmple * state.boundary.steepness() * (p - from.xyz()).norm());

@@ -16,26 +16,23 @@ constexpr float kWatchReach = 1.5F;
 /// gamma is taken as linear over moves up to this many support radii.
 constexpr float kLinearReach = 0.05F;
 
-/// Evaluates the slots' samples at their points, a batch at a time. Without a method the distances alone.
-void evaluate(const StepState& state, std::span<WallSlot* const> slots) {
+/// Evaluates the samples of slot(k), k < count, at their points, a batch at a time. Without a method the
+/// distances alone.
+template <class Slot>
+void evaluate(const StepState& state, std::size_t count, const Slot& slot) {
   if (state.gammaMethod == nullptr) {
-    for (WallSlot* slot : slots) slot->sample.distance = state.boundary.distance(slot->at.xyz());
+    for (std::size_t k = 0; k < count; ++k)
+      slot(k).sample.distance = state.boundary.distance(slot(k).at.xyz());
     return;
   }
   std::array<Float4, 64> points;
   std::array<GammaSample, 64> samples;
-  for (std::size_t begin = 0; begin < slots.size(); begin += points.size()) {
-    const std::size_t n = std::min(points.size(), slots.size() - begin);
-    for (std::size_t k = 0; k < n; ++k) points[k] = slots[begin + k]->at;
+  for (std::size_t begin = 0; begin < count; begin += points.size()) {
+    const std::size_t n = std::min(points.size(), count - begin);
+    for (std::size_t k = 0; k < n; ++k) points[k] = slot(begin + k).at;
     state.gammaMethod->evaluate(std::span(points).first(n), std::span(samples).first(n));
-    for (std::size_t k = 0; k < n; ++k) slots[begin + k]->sample = samples[k];
+    for (std::size_t k = 0; k < n; ++k) slot(begin + k).sample = samples[k];
   }
-}
-
-void evaluate(const StepState& state, std::vector<WallSlot>& slots) {
-  std::vector<WallSlot*> all;
-  for (WallSlot& slot : slots) all.push_back(&slot);
-  evaluate(state, std::span<WallSlot* const>(all));
 }
 
 /// Takes what is known of a particle that is now at p along with the wall in its reach. False where a wall
@@ -115,7 +112,7 @@ void evaluateGamma(StepState& state) {
       }
       if (knownClearance(state, i, p) < watchReach) fresh.push_back({particle, Float4(p), {}});
     }
-    evaluate(state, fresh);
+    evaluate(state, fresh.size(), [&](std::size_t k) -> WallSlot& { return fresh[k]; });
     for (const WallSlot& slot : fresh) remember(state, slot);
     std::erase_if(fresh, [&](const WallSlot& slot) { return slot.sample.distance >= watchReach; });
   });
@@ -157,7 +154,7 @@ void refreshGamma(StepState& state) {
           slot.at = now;
           left.push_back(&slot);
         }
-        evaluate(state, std::span<WallSlot* const>(left));
+        evaluate(state, left.size(), [&](std::size_t k) -> WallSlot& { return *left[k]; });
         long floored = 0;
         for (std::size_t k = begin; k < end; ++k) {
           const WallSlot& slot = state.wallSlots[k];
