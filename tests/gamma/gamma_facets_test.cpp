@@ -22,14 +22,21 @@ using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 using reference::kKernels;
 using reference::kSupport;
 
+/// Places in support radii as points in metres.
+std::vector<Float4> pointsAt(const std::vector<Vec3d>& places) {
+  std::vector<Float4> points;
+  points.reserve(places.size());
+  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  return points;
+}
+
 std::vector<GammaSample> samplesOf(const Boundary& boundary, std::string_view method, KernelType kernel,
                                    const std::vector<Vec3d>& places, int directions = 1024) {
   const auto names = gammaMethodNames();
   const auto index = static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin());
   const PickedGamma picked =
       makeGammaMethod(index, {boundary, kernel, static_cast<float>(kSupport), directions});
-  std::vector<Float4> points;
-  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  const std::vector<Float4> points = pointsAt(places);
   std::vector<GammaSample> samples(points.size());
   picked.method->evaluate(points, samples);
   return samples;
@@ -201,8 +208,7 @@ TEST(GammaFacets, InThePlaneOfAFaceThatFaceHidesNothing) {
 double shareOfTheShortWay(const std::vector<BoxAt>& boxes, const Surfaces& more, KernelType kernel) {
   const Boundary boundary = boundaryOf(boxes, more);
   const std::vector<Vec3d> places = pointsNear(boundary, 640, {-1.2, 0, -1.2}, {1.2, 1.2, 1.2});
-  std::vector<Float4> points;
-  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  const std::vector<Float4> points = pointsAt(places);
   std::vector<GammaSample> found(points.size());
   std::vector<std::size_t> others;
   makeBlockGamma({boundary, kernel, static_cast<float>(kSupport)})->evaluate(points, found, others);
@@ -281,7 +287,7 @@ TEST(GammaFacets, AtAnEdgeItIsTheAngleAndBehindAWallItGoesOn) {
 
 // Meshes, in support radii, against rays that are cast at their triangles one by one.
 
-TriangleMesh scaled(std::vector<Vec3d> places, std::vector<std::array<std::uint32_t, 3>> triangles) {
+TriangleMesh scaled(const std::vector<Vec3d>& places, std::vector<std::array<std::uint32_t, 3>> triangles) {
   TriangleMesh mesh;
   for (const Vec3d& p : places) mesh.vertices.emplace_back((kSupport * p).cast<float>());
   mesh.triangles = std::move(triangles);
