@@ -48,9 +48,10 @@ set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "particle fluids with the density corrected
  Simulates liquids with particles, position based. At walls the density is
  divided by the part of a particle's neighbourhood that no solid covers.
  With a window, pictures that need no display, and reports.")
-# What shared libraries do not say: drivers without a graphics card, the font, gnuplot for maps, the bunny of two scenes.
+# What shared libraries do not say: drivers without a graphics card, the font, gnuplot for maps, the bunny of two scenes,
+# img2webp for films.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl1, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, glmark2-data")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, glmark2-data, webp")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME ${package_of_dev})
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "particle fluids with the density corrected at walls: library

@@ -1,6 +1,7 @@
 #include "app/render/passes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <vector>
 
@@ -213,7 +214,7 @@ void SurfacePass::drawVessels(GLenum culled) const {
   glEnable(GL_CULL_FACE);
   glCullFace(culled);
   const std::size_t offset = static_cast<std::size_t>(solidIndices_) * sizeof(GLuint);
-  glDrawElements(GL_TRIANGLES, vesselIndices_, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
+  glDrawElements(GL_TRIANGLES, vesselIndices_, GL_UNSIGNED_INT, std::bit_cast<const void*>(offset));
   glDisable(GL_CULL_FACE);
 }
 

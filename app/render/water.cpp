@@ -1,4 +1,5 @@
 #include <array>
+#include <bit>
 #include <stdexcept>
 #include <vector>
 
@@ -151,7 +152,7 @@ void WaterPass::drawFaces(const ShaderProgram& program, bool wet) const {
   program.use();
   const std::size_t offset = (wet ? static_cast<std::size_t>(freeIndices_) : 0) * sizeof(GLuint);
   glDrawElements(GL_TRIANGLES, wet ? wetIndices_ : freeIndices_, GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(offset));
+                 std::bit_cast<const void*>(offset));
 }
 
 void WaterPass::drawLayer(const GlFramebuffer& into, GLenum culled, const GlTexture* before) const {

@@ -127,11 +127,11 @@ std::optional<double> slimFitError(const SlimSource& source, const SlimModel& mo
   return measureSlim(model, shape, pool).mean;
 }
 
-std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& asked) {
+std::shared_ptr<const SlimWallData> prepareSlim(const SlimSource& source) {
   static KeptResults<SlimSource, std::shared_ptr<const SlimWallData>> kept(kMostKept);
-  SlimSource source = asked;
-  source.identity = asked.content();
-  return kept.get(source, prepare);
+  SlimSource known = source;
+  known.identity = source.content();
+  return kept.get(known, prepare);
 }
 
 namespace fs = std::filesystem;

@@ -22,14 +22,21 @@ using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 using reference::kKernels;
 using reference::kSupport;
 
+/// Places in support radii as points in metres.
+std::vector<Float4> pointsAt(const std::vector<Vec3d>& places) {
+  std::vector<Float4> points;
+  points.reserve(places.size());
+  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  return points;
+}
+
 std::vector<GammaSample> samplesOf(const Boundary& boundary, std::string_view method, KernelType kernel,
                                    const std::vector<Vec3d>& places, int directions = 1024) {
   const auto names = gammaMethodNames();
   const auto index = static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin());
   const PickedGamma picked =
       makeGammaMethod(index, {boundary, kernel, static_cast<float>(kSupport), directions});
-  std::vector<Float4> points;
-  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  const std::vector<Float4> points = pointsAt(places);
   std::vector<GammaSample> samples(points.size());
   picked.method->evaluate(points, samples);
   return samples;
@@ -201,8 +208,7 @@ TEST(GammaFacets, InThePlaneOfAFaceThatFaceHidesNothing) {
 double shareOfTheShortWay(const std::vector<BoxAt>& boxes, const Surfaces& more, KernelType kernel) {
   const Boundary boundary = boundaryOf(boxes, more);
   const std::vector<Vec3d> places = pointsNear(boundary, 640, {-1.2, 0, -1.2}, {1.2, 1.2, 1.2});
-  std::vector<Float4> points;
-  for (const Vec3d& p : places) points.emplace_back((kSupport * p).cast<float>());
+  const std::vector<Float4> points = pointsAt(places);
   std::vector<GammaSample> found(points.size());
   std::vector<std::size_t> others;
   makeBlockGamma({boundary, kernel, static_cast<float>(kSupport)})->evaluate(points, found, others);
@@ -281,7 +287,7 @@ TEST(GammaFacets, AtAnEdgeItIsTheAngleAndBehindAWallItGoesOn) {
 
 // Meshes, in support radii, against rays that are cast at their triangles one by one.
 
-TriangleMesh scaled(std::vector<Vec3d> places, std::vector<std::array<std::uint32_t, 3>> triangles) {
+TriangleMesh scaled(const std::vector<Vec3d>& places, std::vector<std::array<std::uint32_t, 3>> triangles) {
   TriangleMesh mesh;
   for (const Vec3d& p : places) mesh.vertices.emplace_back((kSupport * p).cast<float>());
   mesh.triangles = std::move(triangles);
@@ -338,12 +344,28 @@ std::shared_ptr<const TriangleWall> wallOf(const TriangleMesh& mesh) {
                                         false, static_cast<float>(kSupport));
 }
 
-/// Where a ray meets the triangles, with +1 where it enters the solid, -1 where it leaves it.
-std::vector<std::pair<double, int>> crossingsOf(const TriangleWall& wall, const Vec3d& p, const Vec3d& w) {
-  std::vector<std::pair<double, int>> crossings;
+/// A triangle in support radii.
+struct Triangle {
+  std::array<Vec3d, 3> corners;
+  bool sheet;
+};
+
+std::vector<Triangle> trianglesOf(const TriangleWall& wall) {
+  std::vector<Triangle> triangles;
   for (const WallTriangle& triangle : wall.tree()->triangles()) {
-    std::array<Vec3d, 3> to;
-    for (std::size_t k = 0; k < 3; ++k) to[k] = triangle.corners[k].cast<double>() / kSupport - p;
+    triangles.push_back({{}, triangle.sheet});
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles.back().corners[k] = triangle.corners[k].cast<double>() / kSupport;
+  }
+  return triangles;
+}
+
+/// Where a ray meets the triangles, with +1 where it enters the solid, -1 where it leaves it.
+std::vector<std::pair<double, int>> crossingsOf(const std::vector<Triangle>& triangles, const Vec3d& p,
+                                                const Vec3d& w) {
+  std::vector<std::pair<double, int>> crossings;
+  for (const Triangle& triangle : triangles) {
+    const std::array<Vec3d, 3> to{triangle.corners[0] - p, triangle.corners[1] - p, triangle.corners[2] - p};
     const double u = w.dot(to[1].cross(to[2])), v = w.dot(to[2].cross(to[0])), s = w.dot(to[0].cross(to[1]));
     if ((u < 0 || v < 0 || s < 0) && (u > 0 || v > 0 || s > 0)) continue;
     const double sum = u + v + s;
@@ -359,12 +381,13 @@ void expectMesh(const std::string& name, const TriangleMesh& mesh, bool thin, do
                 double gammaBound = 1e-4) {
   const auto wall = wallOf(mesh);
   const Boundary boundary(Surfaces{wall});
+  const std::vector<Triangle> triangles = trianglesOf(*wall);
   const std::vector<Vec3d> points = pointsNear(boundary, 20, Vec3d::Constant(-reach), Vec3d::Constant(reach));
   for (const KernelType kernel : {KernelType::poly6, KernelType::wendlandC2}) {
     SCOPED_TRACE(name);
     const auto fluid = [&](const auto& table, const Vec3d& p, const Vec3d& w) {
       double held = table(1);
-      for (const auto& [at, sign] : crossingsOf(*wall, p, w)) {
+      for (const auto& [at, sign] : crossingsOf(triangles, p, w)) {
         if (thin) return table(at);
         held -= sign * (table(1) - table(at));
       }

@@ -52,7 +52,7 @@ inline double interpolate(const std::vector<double>& values, double at) {
     double weight = 1;
     for (int j = 0; j < 4; ++j)
       if (j != i) weight *= (at - (first + j)) / (i - j);
-    sum += weight * values[static_cast<std::size_t>(first + i)];
+    sum += weight * values[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)];
   }
   return sum;
 }
@@ -210,17 +210,17 @@ class Wedge {
   std::vector<double> values_;
 };
 
-/// At distance `offset` from the centre of a sphere of radius R: the part of the kernel inside the sphere,
-/// exactly, from the spherical caps that it cuts from the shells.
-inline double insideSphere(KernelType type, double offset, double R) {
+/// At distance `offset` from the centre of a sphere: the part of the kernel inside the sphere, exactly, from
+/// the spherical caps that it cuts from the shells.
+inline double insideSphere(KernelType type, double offset, double radius) {
   const auto shell = [&](double r) {
-    const double cosine = (R * R - offset * offset - r * r) / (2 * offset * r);
-    const double part = offset < 1e-12 ? (r < R ? 1.0 : 0.0) : std::clamp(0.5 * (1 + cosine), 0.0, 1.0);
+    const double cosine = (radius * radius - offset * offset - r * r) / (2 * offset * r);
+    const double part = offset < 1e-12 ? (r < radius ? 1.0 : 0.0) : std::clamp(0.5 * (1 + cosine), 0.0, 1.0);
     return 4 * std::numbers::pi * r * r * kernel(type, r) * part;
   };
   // Panels end where the shell first and last meets the sphere, and at the spline's knot.
   std::vector<double> ends{0, 0.5, 1};
-  for (const double r : {std::abs(R - offset), R + offset})
+  for (const double r : {std::abs(radius - offset), radius + offset})
     if (r < 1) ends.push_back(r);
   std::sort(ends.begin(), ends.end());
   double sum = 0;

@@ -32,8 +32,17 @@ TEST(ShippedScenes, AllAreReadAndSayWhatTheyShow) {
     EXPECT_NE(scene.name, scene.stem()) << "has a name of its own";
     EXPECT_GT(scene.description.size(), 60U);
     EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.origin, Vec3d(0, 0, 0));
   }
   EXPECT_GE(scenes, 3);
+}
+
+TEST(ShippedScenes, OriginIsZeroInEveryFolderUnlessTheSceneIsFar) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kScenes)) {
+    if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
+    const bool far = entry.path().stem() == "far_origin";
+    EXPECT_EQ(readScene(entry.path()).origin, far ? Vec3d(10000, 0, 10000) : Vec3d(0, 0, 0)) << entry.path();
+  }
 }
 
 TEST(ShippedScenes, AllFluidStartsInsideTheWalls) {

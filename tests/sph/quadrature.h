@@ -22,7 +22,8 @@ inline Rule makeRule() {
     double slope = 1;
     for (int iteration = 0; iteration < 50; ++iteration) {
       double previous = 1, value = x;
-      for (double degree = 2; degree <= n; ++degree) {
+      for (std::size_t order = 2; order <= Rule::kPoints; ++order) {
+        const auto degree = static_cast<double>(order);
         const double next = ((2 * degree - 1) * x * value - (degree - 1) * previous) / degree;
         previous = value;
         value = next;

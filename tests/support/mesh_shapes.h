@@ -50,9 +50,8 @@ inline TriangleMesh ballMesh(const Vec3d& center, double radius, std::uint32_t r
   for (std::uint32_t ring = 1; ring < rings; ++ring) {
     for (std::uint32_t k = 0; k < around; ++k) {
       const double down = std::numbers::pi * ring / rings, turn = 2 * std::numbers::pi * k / around;
-      mesh.vertices.push_back((center + radius * Vec3d(std::sin(down) * std::sin(turn), std::cos(down),
-                                                       std::sin(down) * std::cos(turn)))
-                                  .cast<float>());
+      const Vec3d outwards(std::sin(down) * std::sin(turn), std::cos(down), std::sin(down) * std::cos(turn));
+      mesh.vertices.emplace_back((center + radius * outwards).cast<float>());
     }
   }
   for (std::uint32_t ring = 0; ring < rings; ++ring) {

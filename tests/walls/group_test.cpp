@@ -45,8 +45,8 @@ TEST(Group, OfBallAndTubeIsTheirUnion) {
   EXPECT_NEAR(walls.distance({0.5F, 2, 0}), -0.4, 1e-5);
 }
 
-/// Communicating vessels: water poured into one stands as high in the other in the end.
-TEST(Group, WaterFindsItsLevelThroughTheChannel) {
+/// Water poured into one stands as high in the other in the end.
+TEST(CommunicatingVessels, WaterFindsItsLevelThroughTheChannel) {
   const std::string tanks = box("[0, 0, 0]", "[0.6, 1.2, 0.3]") + ", " +
                             box("[0.8, 0, 0]", "[1.4, 1.2, 0.3]") + ", " +
                             box("[0.6, 0, 0]", "[0.8, 0.3, 0.3]");

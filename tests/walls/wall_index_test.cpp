@@ -49,7 +49,7 @@ TEST(WallIndex, BoundariesAnswerAsIfTheyAskedEveryWall) {
   Boundary indexed(walls);
   indexed.indexWalls(0.2F);
   std::size_t asked = 0, wallsNear = 0;
-  for (const Vec3f& p : places(5000)) {
+  for (const Vec3f& p : places(2000)) {
     Vec3f one, other;
     ASSERT_EQ(indexed.distance(p, one), all.distance(p, other)) << p.transpose();
     ASSERT_EQ(one, other);
@@ -79,7 +79,7 @@ TEST(WallIndex, WithoutTheNearestItHasWhatIsInReachOnly) {
   std::vector<const Surface*> pointers;
   for (std::size_t k = 2; k < walls.surfaces().size(); ++k) pointers.push_back(walls.surfaces()[k].get());
   const WallIndex index(pointers, 0.1F, false);
-  for (const Vec3f& p : places(5000)) {
+  for (const Vec3f& p : places(2000)) {
     const auto near = index.near(p);
     for (const Surface* wall : pointers) {
       Vec3f ignored;
@@ -99,7 +99,7 @@ TEST(WallIndex, AWallThatMovesIsFoundWhereItHasGone) {
   all.moveTo(1.4, 1.5);
   indexed.moveTo(1.4, 1.5);
   const Bounds now = all.moving().front()->bounds();
-  for (const Vec3f& p : places(5000)) {
+  for (const Vec3f& p : places(2000)) {
     Vec3f one, other;
     ASSERT_EQ(indexed.distance(p, one), all.distance(p, other)) << p.transpose();
   }
