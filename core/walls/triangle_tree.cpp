@@ -164,7 +164,23 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3f& p) const {
   }
   const float distance = std::sqrt(least);
   const Vec3f mean = triangle.sheet ? triangle.normal : meanNormal(foot.place);
-  const bool behind = mean.dot(way) < 0;
+  float side = mean.dot(way);
+  const bool atCorner = std::any_of(
+      triangle.corners.begin(), triangle.corners.end(),
+      [&](const Vec3f& corner) { return (corner - foot.place).squaredNorm() <= rounding_ * rounding_; });
+  if (!triangle.sheet && !atCorner) {
+    // At an edge, the face that the way leaves most steeply: where parts cross there are slivers beside it,
+    // which the mean would count as faces.
+    side = height;
+    visitWithin(foot.place, rounding_, [&](std::uint32_t k) {
+      const WallTriangle& other = triangles_[k];
+      if (other.sheet ||
+          (footOn(other.corners, foot.place).place - foot.place).squaredNorm() > rounding_ * rounding_)
+        return;
+      if (const float own = other.normal.dot(way); std::abs(own) > std::abs(side)) side = own;
+    });
+  }
+  const bool behind = side < 0;
   // On the wall itself the way to it has no direction.
   if (distance <= rounding_) {
     const float length = mean.norm();
