@@ -146,16 +146,31 @@ class SurfaceCommand {
     ThreadPool pool(common_.threads);
     SceneSurface surface(*scene_, options_, pool);
     ProgressBar progress(0, static_cast<double>(job_.particles.size()), common_.quiet);
+    // Frames without particles at the beginning wait for one that has some.
+    std::vector<std::pair<std::string, double>> waiting;
+    const auto writeFrame = [&](const std::string& file, const ImportedParticles& particles, double time) {
+      write(std::filesystem::path(file).stem().string() + "_surface",
+            surface.mesh(particles.positions, particles.velocities, time), time, particles.positions.size());
+    };
     for (const std::string& file : job_.particles) {
       const ImportedParticles particles = readParticles(file, scene_->origin);
       if (!particles.time && surface.boundary().moves())
         throw InputError(file, "expected the time of the particles, for walls move, found none in the file");
       const double time = particles.time.value_or(0);
-      const SurfaceMesh mesh = surface.mesh(particles.positions, particles.velocities, time);
-      write(std::filesystem::path(file).stem().string() + "_surface", mesh, time, particles.positions.size());
-      progress.update(static_cast<double>(entries_.size()));
+      if (particles.positions.empty() && entries_.empty()) {
+        waiting.emplace_back(file, time);
+      } else {
+        for (const auto& [empty, then] : waiting) writeFrame(empty, {}, then);
+        waiting.clear();
+        writeFrame(file, particles, time);
+      }
+      progress.update(static_cast<double>(entries_.size() + waiting.size()));
     }
     progress.wipe();
+    if (entries_.empty())
+      throw InputError(job_.particles.front(),
+                       "expected particles, found none" +
+                           std::string(job_.particles.size() > 1 ? ", nor in the other files" : ""));
     finish(scene_->file.empty() ? std::filesystem::path(job_.particles.front()).stem().string()
                                 : scene_->stem());
     return kDone;

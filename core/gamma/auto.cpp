@@ -19,6 +19,17 @@ namespace migiwa {
 
 namespace {
 
+/// Appends to a list.
+void addName(std::string& list, std::string_view name) {
+  if (!list.empty()) list += ", ";
+  list += name;
+}
+
+/// Whether a list of names has one.
+bool hasName(std::string_view list, std::string_view name) {
+  return (", " + std::string(list) + ",").find(", " + std::string(name) + ",") != std::string::npos;
+}
+
 enum Pick : std::size_t { kProduct, kFacets, kCurved };
 constexpr std::size_t kPicks = 3;
 
@@ -83,34 +94,51 @@ class AutoGamma final : public GammaMethod {
     }
   }
 
+  long takeOutOfRange() const override {
+    long count = blocks_ != nullptr ? blocks_->takeOutOfRange() : 0;
+    for (const auto& method : methods_) count += method->takeOutOfRange();
+    return count;
+  }
+
   GammaChoice choice() const override {
     const auto& surfaces = boundary_.surfaces();
     const auto any = [&](const auto& of) { return std::any_of(surfaces.begin(), surfaces.end(), of); };
-    const bool planar = any([](const auto& s) { return s->planar(); });
+    const bool planes = any([](const auto& s) { return s->planar(); });
+    const bool curves = any([](const auto& s) { return !s->planar() && !s->faceted(); });
     const bool meshes = any([](const auto& s) { return s->faceted() && !s->planar(); });
-    if (any([](const auto& s) { return !s->planar() && !s->faceted(); }) || (meshes && grid_ != nullptr)) {
-      const std::string curved = grid_ != nullptr ? "baked" : "directions";
-      const std::string why =
-          grid_ != nullptr
-              ? "; curved walls: " + methods_[kCurved]->choice().reason
-              : "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
-      if (curved_) return {curved, "all walls are curved" + why};
-      return {(planar ? "product, facets, " : "facets, ") + curved,
-              "by the walls in reach of each particle" + why};
+    const bool rims = any([this](const auto& s) { return s->planar() && s->thickness() < support_; });
+    const bool angles = obliquePlanesMeet();
+    // A grid has no thin parts.
+    const bool thinMeshes = any([this](const auto& s) {
+      return s->faceted() && !s->planar() &&
+             s->thinWithin(s->bounds().center().template cast<float>(),
+                           static_cast<float>(s->bounds().size().norm()) + support_, support_);
+    });
+    const bool facetsOfMeshes = meshes && (grid_ == nullptr || thinMeshes);
+    const bool facets = rims || angles || facetsOfMeshes;
+    const bool baked = grid_ != nullptr && (curves || meshes);
+
+    GammaChoice choice;
+    if (planes) addName(choice.name, "product");
+    if (facets) addName(choice.name, "facets");
+    if (baked) addName(choice.name, "baked");
+    if (curves && !baked) addName(choice.name, "directions");
+    if (!facets && !baked && !curves) {
+      choice.reason = "all walls are planes, parallel or at right angles";
+      return choice;
     }
-    if (meshes)
-      return {planar ? "product, facets" : "facets",
-              "by the walls in reach of each particle: planes, and meshes"};
-    if (any([this](const auto& s) { return s->thickness() < support_; }))
-      return {
-          "product, facets",
-          "by the walls in reach of each particle: planes, and the rims of walls thinner than the support "
-          "radius"};
-    const bool turn = std::any_of(boundary_.moving().begin(), boundary_.moving().end(),
-                                  [](const auto& wall) { return wall->motion().turns; });
-    if (turn) return {"product, facets", "by the walls in reach of each particle: planes, and some turn"};
-    if (rightAngled()) return {"product", "all walls are planes, parallel or at right angles"};
-    return {"product, facets", "by the walls in reach of each particle: planes at various angles"};
+    choice.reason = curved_ ? "all walls are curved" : "by the walls in reach of each particle";
+    std::string kinds;
+    if (planes) addName(kinds, angles ? "planes at various angles" : "planes");
+    if (rims) addName(kinds, "the rims of walls thinner than the support radius");
+    if (facetsOfMeshes) addName(kinds, grid_ == nullptr ? "meshes" : "thin parts of meshes");
+    if (!kinds.empty()) choice.reason += ": " + kinds;
+    if (baked)
+      choice.reason +=
+          std::string(curves ? "; curved walls: " : "; meshes: ") + methods_[kCurved]->choice().reason;
+    else if (curves)
+      choice.reason += "; curved walls too large for a grid that is made in a few seconds: 1024 directions";
+    return choice;
   }
 
  private:
@@ -140,19 +168,34 @@ class AutoGamma final : public GammaMethod {
     return cosine < 1e-3F || cosine > 0.999F;
   }
 
-  bool rightAngled() const {
-    std::vector<WallPiece> pieces;
-    // Every plane of every surface, wherever it is.
+  /// Whether a particle may have two planes in reach that are not at right angles, of what counts together:
+  /// all tanks, with each block.
+  bool obliquePlanesMeet() const {
+    const std::span<const std::shared_ptr<MovingSurface>> moving = boundary_.moving();
+    if (std::any_of(moving.begin(), moving.end(), [](const auto& wall) { return wall->motion().turns; }))
+      return true;
+    constexpr float kEverywhere = std::numeric_limits<float>::infinity();
+    std::vector<WallPiece> tanks, block;
     for (const auto& surface : boundary_.surfaces())
-      surface->pieces(Vec3f::Zero(), std::numeric_limits<float>::infinity(), pieces);
-    std::vector<Vec3f> normals;
-    for (const WallPiece& piece : pieces) {
-      if (std::find(normals.begin(), normals.end(), piece.normal) != normals.end()) continue;
-      for (const Vec3f& other : normals)
-        if (!acrossEachOther(piece.normal, other)) return false;
-      normals.push_back(piece.normal);
+      if (surface->planar() && surface->pieceRule() == PieceRule::fluidInsideAll)
+        surface->pieces(Vec3f::Zero(), kEverywhere, tanks);
+    for (std::size_t k = 0; k < tanks.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l)
+        if (!acrossEachOther(tanks[k].normal, tanks[l].normal)) return true;
+    for (const auto& surface : boundary_.surfaces()) {
+      if (!surface->planar() || surface->pieceRule() == PieceRule::fluidInsideAll) continue;
+      block.clear();
+      surface->pieces(Vec3f::Zero(), kEverywhere, block);
+      const Vec3f center = surface->bounds().center().cast<float>();
+      const Vec3f half = 0.5F * surface->bounds().size().cast<float>();
+      for (const WallPiece& plane : tanks) {
+        const float distance = plane.planeDistance + plane.normal.dot(center);
+        if (!boundary_.moves() && distance - half.dot(plane.normal.cwiseAbs()) >= 2 * support_) continue;
+        for (const WallPiece& face : block)
+          if (!acrossEachOther(plane.normal, face.normal)) return true;
+      }
     }
-    return true;
+    return false;
   }
 
   Pick pick(const Vec3f& p, HalfSpaces& walls) const {
@@ -234,14 +277,29 @@ class MovingGamma final : public GammaMethod {
 
   GammaChoice choice() const override {
     GammaChoice result{"", "walls that move, each in its own frame"};
+    const auto addNames = [&result](std::string_view names) {
+      while (!names.empty()) {
+        const std::string_view name = names.substr(0, names.find(", "));
+        if (!hasName(result.name, name)) addName(result.name, name);
+        names.remove_prefix(std::min(names.size(), name.size() + 2));
+      }
+    };
     for (const Frame& frame : frames_) {
       const GammaChoice own = frame.method->choice();
-      if (result.name.find(own.name) == std::string::npos)
-        result.name += (result.name.empty() ? "" : ", ") + own.name;
+      addNames(own.name);
       result.reason += "; " + std::string(frame.mover == nullptr ? "still: " : "moving: ") + own.reason;
     }
-    result.reason += "; where several are in reach: " + whole_->choice().name;
+    if (frames_.size() < 2) return result;
+    const std::string whole = whole_->choice().name;
+    addNames(whole);
+    result.reason += "; where several are in reach: " + whole;
     return result;
+  }
+
+  long takeOutOfRange() const override {
+    long count = whole_->takeOutOfRange();
+    for (const Frame& frame : frames_) count += frame.method->takeOutOfRange();
+    return count;
   }
 
   void wallsMoved() override { whole_->wallsMoved(); }

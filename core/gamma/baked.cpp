@@ -71,6 +71,7 @@ class BakedGamma final : public GridGamma {
   }
 
   GammaChoice choice() const override { return {"baked", reason_}; }
+  long takeOutOfRange() const override { return elsewhere_->takeOutOfRange(); }
   bool covers(const Vec3f& p) const override { return laidOut() && grid_.placeOf(p).state >= 0; }
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {

@@ -81,6 +81,8 @@ class BlockGamma {
   /// Fills out[i] for points[i] where it can; elsewhere the distance alone, and i is appended to `others`.
   virtual void evaluate(std::span<const Float4> points, std::span<GammaSample> out,
                         std::vector<std::size_t>& others) const = 0;
+  /// As of a GammaMethod.
+  virtual long takeOutOfRange() const = 0;
 };
 
 /// Null where no wall is such a block.

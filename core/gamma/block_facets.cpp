@@ -99,8 +99,10 @@ class BlockFacets final : public BlockGamma {
         addBlock(i, block, scratch, out[i]);
     }
     scratch.sums.finish(kernel_, out);
-    clampToRange(out);
+    for (GammaSample& sample : out) range_.set(sample, sample.gamma);
   }
+
+  long takeOutOfRange() const override { return range_.take(); }
 
  private:
   static constexpr std::size_t kMostBlocks = 8;
@@ -203,6 +205,7 @@ class BlockFacets final : public BlockGamma {
   const Boundary& boundary_;
   KernelType kernel_;
   float support_;
+  ShareRange range_;
 };
 
 }  // namespace

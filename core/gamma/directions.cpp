@@ -42,7 +42,7 @@ class DirectionsGamma final : public GammaMethod {
       atFluidPoint(p - behind * normal, std::max(out[i].distance, 0.0F), normal, scratch, out[i]);
       if (behind < 0) {
         const float moved = behind / support_;
-        out[i].gamma = std::clamp(out[i].gamma + moved * out[i].gradient.dot(normal), 0.0F, 1.0F);
+        range_.set(out[i], out[i].gamma + moved * out[i].gradient.dot(normal));
       }
     }
   }
@@ -114,7 +114,7 @@ class DirectionsGamma final : public GammaMethod {
       sample.gradient += Kernel::planeGammaSlope(plane->e) * plane->normal;
       sample.pairGradient += Pair::planeGammaSlope(plane->e) * plane->normal;
     }
-    sample.gamma = std::clamp(sample.gamma, 0.0F, 1.0F);
+    range_.set(sample, sample.gamma);
   }
 
   const Boundary& boundary_;

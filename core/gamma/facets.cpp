@@ -156,7 +156,7 @@ class FacetsGamma final : public GammaMethod {
     }
     scratch.sums.finish(kernel_, out);
     for (const auto& [at, by] : scratch.moved) out[at].gamma += out[at].gradient.dot(by);
-    clampToRange(out);
+    for (GammaSample& sample : out) range_.set(sample, sample.gamma);
   }
 
  private:

@@ -1,6 +1,9 @@
 // Methods of gamma, and the wall models that they are compared with.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,7 +31,24 @@ struct GammaSample {
   Vec3f pairGradient = Vec3f::Zero();  ///< the same for the kernel of the pair gradients: the wall's push
 };
 
-/// What a method that chooses among others will use for its walls, and why. Empty for one that does not
+/// Keeps shares of a kernel in [0, 1], and counts those that were farther out of it than a method errs: where
+/// walls overlap, what is in both is taken twice.
+class ShareRange {
+ public:
+  static constexpr float kTolerance = 0.02F;
+
+  void set(GammaSample& sample, float share) const {
+    sample.gamma = std::clamp(share, 0.0F, 1.0F);
+    if (std::abs(share - sample.gamma) > kTolerance) out_.fetch_add(1, std::memory_order_relaxed);
+  }
+  /// How many were, since the last call.
+  long take() const { return out_.exchange(0, std::memory_order_relaxed); }
+
+ private:
+  mutable std::atomic<long> out_ = 0;
+};
+
+/// What a method that chooses among others uses for its walls, and why. Empty for one that does not
 /// choose.
 struct GammaChoice {
   std::string name, reason;
@@ -57,6 +77,11 @@ class GammaMethod {
   virtual void evaluateMeasured(std::span<const Float4> points, std::span<GammaSample> out) const {
     evaluate(points, out);
   }
+  /// How many samples ShareRange has counted since the last call.
+  virtual long takeOutOfRange() const { return range_.take(); }
+
+ protected:
+  const ShareRange range_;
 
  private:
   WallDensity form_;

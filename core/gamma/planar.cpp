@@ -56,10 +56,10 @@ class PlanarGamma final : public GammaMethod {
   }
 
  private:
-  static void combine(const HalfSpaces& walls, std::vector<KernelPart>& parts, GammaSample& sample) {
+  void combine(const HalfSpaces& walls, std::vector<KernelPart>& parts, GammaSample& sample) const {
     using Pair = PairKernel<Kernel>;
     const KernelPart fluid = fluidPart<Kernel>(walls, parts, true);
-    sample.gamma = std::clamp(fluid.value, 0.0F, 1.0F);
+    range_.set(sample, fluid.value);
     sample.gradient = fluid.gradient;
     sample.pairGradient =
         std::is_same_v<Kernel, Pair> ? fluid.gradient : fluidPart<Pair>(walls, parts, false).gradient;

@@ -23,12 +23,6 @@ inline constexpr float kFacetRounding = 1e-5F;
 /// Of the support radius: from a corner or an edge no facet is seen, so that much a point is kept off walls.
 inline constexpr float kClearOfFacets = 1e-4F;
 
-/// What rounding leaves of a share beyond its ends, and walls that overlap, which count twice. Where gamma
-/// ends below its floor the solver says so.
-inline void clampToRange(std::span<GammaSample> samples) {
-  for (GammaSample& sample : samples) sample.gamma = std::clamp(sample.gamma, 0.0F, 1.0F);
-}
-
 // Lengths are over the support radius, and places relative to the point.
 
 template <class Kernel>

@@ -225,7 +225,7 @@ void readPly(ImportText& text, ParticleTaker& taker) {
   }
 }
 
-/// Legacy VTK, binary, which is big-endian: POINTS, and an array "velocity" of a FIELD.
+/// Legacy VTK, binary, which is big-endian: POINTS, and "velocity", an array of a FIELD or VECTORS.
 void readVtk(ImportText& text, ParticleTaker& taker) {
   text.line();
   taker.result.time = timeIn(text.line(), " at ");
@@ -245,11 +245,13 @@ void readVtk(ImportText& text, ParticleTaker& taker) {
   const double count = importedCount(text, words[1]);
   triples(count, words[2], [&](const std::array<double, 3>& p) { taker.position(p); });
   // Bytes of the data could spell the name: only what goes on as an array of it counts.
-  const std::string array = "velocity 3 " + words[1] + " ";
-  const std::size_t velocity = text.find(array);
-  if (velocity == std::string::npos) return;
-  text.goTo(velocity + array.size());
-  triples(count, std::string(text.line()), [&](const std::array<double, 3>& u) { taker.velocity(u); });
+  for (const std::string& array : {"\nvelocity 3 " + words[1] + " ", std::string("\nVECTORS velocity ")}) {
+    const std::size_t velocity = text.find(array);
+    if (velocity == std::string::npos) continue;
+    text.goTo(velocity + array.size());
+    triples(count, std::string(text.line()), [&](const std::array<double, 3>& u) { taker.velocity(u); });
+    return;
+  }
 }
 
 }  // namespace
@@ -264,7 +266,6 @@ ImportedParticles readParticles(const std::filesystem::path& file, const Vec3d& 
   } else {
     text.fail("expected particles as PLY or legacy VTK, found a file that begins otherwise");
   }
-  if (taker.result.positions.empty()) text.fail("expected particles, found none");
   return std::move(taker.result);
 }
 

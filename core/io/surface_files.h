@@ -50,8 +50,8 @@ struct ImportedParticles {
 };
 
 /// Reads vertices of a PLY file (binary little-endian or ASCII) or points of a legacy VTK file (binary).
-/// Throws InputError at the file, where it is neither, ends too soon, holds no particle or one that is at no
-/// finite place.
+/// There may be none. Throws InputError at the file, where it is neither, ends too soon, or holds a particle
+/// that is at no finite place.
 ImportedParticles readParticles(const std::filesystem::path& file, const Vec3d& origin = Vec3d::Zero());
 
 }  // namespace migiwa

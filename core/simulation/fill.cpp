@@ -105,13 +105,40 @@ std::optional<int> fewLayers(const Particles& particles, const Vec3d& gravity, d
   return static_cast<int>(std::lround(deepest)) + 1;
 }
 
+/// The most that a wall's stated error counts, in spacings.
+constexpr double kMostError = 0.25;
+
+/// Whether there is room at p, half a `spacing` (m) from every wall. Where a wall stands for a shape that it
+/// is not quite, there is as soon as there may be before that shape; p then moves away from the wall.
+bool hasRoom(const Boundary& boundary, Vec3f& p, double spacing) {
+  // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take
+  // rounding.
+  const auto margin = static_cast<float>((0.5 - 1e-3) * spacing);
+  const auto mostError = static_cast<float>(kMostError * spacing);
+  const float distance = boundary.distance(p);
+  if (!(distance < margin)) return true;
+  if (distance < margin - mostError) return false;
+  Vec3f ignored;
+  for (const Surface* wall : boundary.near(p, margin))
+    if (const float missing = margin - wall->distance(p, ignored);
+        missing > 0 && missing > wall->statedError(p))
+      return false;
+  // In a corner that is rounded each round comes a part of the way.
+  constexpr int kRounds = 16;
+  Vec3f moved = p, before = p;
+  for (int round = 0; round < kRounds && (round == 0 || (moved - before).norm() > 1e-4F * margin); ++round) {
+    before = moved;
+    boundary.project(moved, static_cast<float>(0.5 * spacing));
+  }
+  if (boundary.distance(moved) < margin || (moved - p).norm() > 2 * mostError) return false;
+  p = moved;
+  return true;
+}
+
 }  // namespace
 
 void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
   const double spacing = scene.particleSpacing;
-  // A lattice that fills a tank to its walls has its first layer at exactly half a spacing, give or take
-  // rounding.
-  const auto margin = static_cast<float>((0.5 - 1e-3) * spacing);
   double most = 0;
   for (const auto& source : scene.fluid) most += source->count(spacing);
   requireMemory(kBytesWhileFilling * most, "particles", scene.file.string() + ":/particle_spacing");
@@ -130,8 +157,8 @@ void fillScene(Scene& scene, const Boundary& boundary, Particles& particles) {
     for (const Vec3d& center : centers) {
       if (const auto done = static_cast<std::size_t>(&center - centers.data()); done % kTold == 0)
         Activity::pulse(static_cast<double>(done) / static_cast<double>(centers.size()));
-      const Vec3f p = center.cast<float>();
-      if (source.trim && boundary.distance(p) < margin) {
+      Vec3f p = center.cast<float>();
+      if (source.trim && !hasRoom(boundary, p, spacing)) {
         ++inWalls;
       } else if (source.trim && anyWithin(taken, p)) {
         ++inOthers;

@@ -144,7 +144,7 @@ Simulation::Simulation(Scene scene, int threads, Guards guards)
                                 " of that at rest; particles were moved apart without gaining speed");
     }
   }
-  state.statistics.noteSpread(state.step, 0);
+  state.statistics.noteRepairs(state.step, 0);
   state.health = inspect(state.step, state.limits);
   state.statistics.energy.begin(state.health.energy, state.step, heightOf(state.step));
   state.info.stateHash = stateHash();

@@ -18,11 +18,17 @@ void RunStatistics::note(const std::string& kind, long step, const std::string& 
   }
 }
 
-void RunStatistics::noteSpread(const StepState& state, long step) {
-  if (state.spreadParticles == 0) return;
-  note("heap", step,
-       std::to_string(state.spreadParticles) +
-           " particles lay in overfull cells; they were spread without gaining speed");
+void RunStatistics::noteRepairs(const StepState& state, long step) {
+  if (state.spreadParticles > 0) {
+    note("heap", step,
+         std::to_string(state.spreadParticles) +
+             " particles lay in overfull cells; they were spread without gaining speed");
+  }
+  if (state.gammaOutOfRange > 0) {
+    note("gamma_range", step,
+         std::to_string(state.gammaOutOfRange) +
+             " evaluations of gamma were out of [0, 1] and were set to its end, as where walls overlap");
+  }
 }
 
 void RunStatistics::record(const StepState& state, const Health& health, double dt, double seconds) {
@@ -57,7 +63,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
          std::to_string(state.suppressedPushes.size()) +
              " times a wall pushed a particle further than it had moved; the push added no speed");
   }
-  noteSpread(state, steps);
+  noteRepairs(state, steps);
   if (state.metCoincident) {
     note("coincident", steps,
          "pairs of particles lay on one point; their direction was taken from their ids");

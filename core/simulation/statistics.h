@@ -206,8 +206,9 @@ struct RunStatistics {
   std::vector<Trouble> trouble;
 
   void note(const std::string& kind, long step, const std::string& detail);
-  /// Notes the particles that were spread off overfull cells, if there are any.
-  void noteSpread(const StepState& state, long step);
+  /// Notes particles that were spread off overfull cells and shares of the kernel that were out of range, if
+  /// there are any.
+  void noteRepairs(const StepState& state, long step);
   /// Takes in a finished substep of `dt` (s) that took `seconds` of wall time.
   void record(const StepState& state, const Health& health, double dt, double seconds);
   /// All of it for a save, but for gammaPicked and gammaReason, which follow from the scene.

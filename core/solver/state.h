@@ -132,6 +132,7 @@ struct StepRecord {
 
   // Guards that acted.
   long gammaFloored = 0;
+  long gammaOutOfRange = 0;  ///< evaluations that ShareRange has counted
   std::vector<SuppressedPush> suppressedPushes;
   long spreadParticles = 0;                         ///< off overfull cells, see stages::spreadOverfullCells
   mutable std::atomic<bool> metCoincident = false;  ///< a pass over pairs met one on one point
@@ -146,7 +147,7 @@ struct StepRecord {
 
   /// Before a step. Errors, work and pressure begin with the stages that add to them.
   void clear() {
-    gammaFloored = spreadParticles = 0;
+    gammaFloored = gammaOutOfRange = spreadParticles = 0;
     suppressedPushes.clear();
     metCoincident = false;
     times.clear();

@@ -78,6 +78,10 @@ long floorGamma(const StepState& state, float& gamma) {
   return 1;
 }
 
+void countOutOfRange(StepState& state) {
+  if (state.gammaMethod != nullptr) state.gammaOutOfRange += state.gammaMethod->takeOutOfRange();
+}
+
 }  // namespace
 
 void evaluateGamma(StepState& state) {
@@ -138,6 +142,7 @@ void evaluateGamma(StepState& state) {
     std::for_each(found[chunk].fresh.begin(), found[chunk].fresh.end(), take);
   });
   for (const long count : floored) state.gammaFloored += count;
+  countOutOfRange(state);
 }
 
 void refreshGamma(StepState& state) {
@@ -165,6 +170,7 @@ void refreshGamma(StepState& state) {
         return floored;
       },
       [](long a, long b) { return a + b; });
+  countOutOfRange(state);
 }
 
 }  // namespace migiwa::stages

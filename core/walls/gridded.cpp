@@ -94,6 +94,11 @@ float GriddedSurface::distance(const Vec3f& p, Vec3f& normal) const {
   return reach_;
 }
 
+float GriddedSurface::statedError(const Vec3f& p) const {
+  Vec3f ignored;
+  return shape_->statedError(p) + std::abs(shape_->distance(p, ignored) - distance(p, ignored));
+}
+
 bool GriddedSurface::project(Vec3f& p, float margin) const {
   constexpr int kRounds = 8;
   const float rounding = 1e-4F * margin;

@@ -113,6 +113,8 @@ class GriddedSurface final : public StandIn {
   /// smooth and by 0.02 next to creases, which it rounds. Farther out in the fluid no more than kReach, and
   /// deep in the solid the shape's own.
   float distance(const Vec3f& p, Vec3f& normal) const override;
+  /// That of the shape, and what the splines miss of its distance.
+  float statedError(const Vec3f& p) const override;
   bool project(Vec3f& p, float margin) const override;
   bool hides(const Vec3f& from, const Vec3f& to) const override {
     return !outOfReach(from, (to - from).norm()) && shape_->hides(from, to);

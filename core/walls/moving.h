@@ -36,6 +36,7 @@ class MovingSurface final : public Surface {
   bool project(Vec3f& p, float margin) const override;
   void otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;
+  float statedError(const Vec3f& p) const override { return rest_->statedError(toRest(p)); }
   bool reentrant() const override { return rest_->reentrant(); }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override;
   float thickness() const override { return rest_->thickness(); }

@@ -142,6 +142,21 @@ float SlimSurface::distance(const Vec3f& p, Vec3f& normal) const {
   return holdsFluid() ? -nearest.distance : nearest.distance;
 }
 
+float SlimSurface::statedError(const Vec3f& p) const {
+  /// Faces of a mesh that meet at a right angle, and the blend between them, are farther apart than that.
+  constexpr float kSmooth = 0.8F;
+  const SlimModel::Nearest nearest = data_->model->nearest(p);
+  const Vec3f foot = p - nearest.distance * nearest.normal;
+  float error = 0, least = 1;
+  data_->model->visitWithin(foot, 1e-6F * data_->model->largestRadius(), [&](std::uint32_t index) {
+    const SlimNode& node = data_->model->nodes()[index];
+    error = std::max(error, node.error);
+    least = std::min(least, node.normal.dot(nearest.normal));
+  });
+  // In a corner the blend of three faces may miss as much as all of them together.
+  return least < kSmooth ? 3 * error : error;
+}
+
 bool SlimSurface::project(Vec3f& p, float margin) const {
   const float coarse = data_->model->coarseDistance(p) * (holdsFluid() ? -1.0F : 1.0F);
   if (coarse - data_->model->coarseError() > margin) return false;

@@ -83,6 +83,8 @@ class SlimSurface : public Surface {
   /// Not without a grid: nodes end, and are looked at closely only near the surface.
   bool steadyDistance() const override { return false; }
   float distance(const Vec3f& p, Vec3f& normal) const override;
+  /// By the errors of the nodes at the nearest point.
+  float statedError(const Vec3f& p) const override;
   std::optional<double> fitError() const override { return slimFitError(source_, *data_->model); }
   bool project(Vec3f& p, float margin) const override;
   void firstHits(const Vec3f& origin, const Directions& directions, std::span<float> hits) const override;

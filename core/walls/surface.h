@@ -202,6 +202,9 @@ class Surface {
   /// Null where it is this one.
   virtual std::shared_ptr<const Surface> forSupport(float /*supportRadius*/) const { return nullptr; }
 
+  /// How far (m) the wall near p may be from the shape that it stands for, as far as it knows: 0 where it is
+  /// what it says.
+  virtual float statedError(const Vec3f& /*p*/) const { return 0; }
   /// Mean distance (m) of the wall from the shape that it was fitted to; null where it is what it says, or
   /// that shape is not at hand. Reads the shape anew.
   virtual std::optional<double> fitError() const { return std::nullopt; }
@@ -311,6 +314,7 @@ class StandIn : public Surface {
     shape_->firstHits(origin, directions, hits);
   }
   bool steadyDistance() const override { return shape_->steadyDistance(); }
+  float statedError(const Vec3f& p) const override { return shape_->statedError(p); }
   std::optional<double> fitError() const override { return shape_->fitError(); }
   bool reentrant() const override { return shape_->reentrant(); }
   void exits(const Vec3f& origin, const Directions& directions, std::span<float> exits) const override {

@@ -122,6 +122,24 @@ Vec3f TriangleTree::meanNormal(const Vec3f& foot) const {
   return sum;
 }
 
+float TriangleTree::sideAt(const WallTriangle& triangle, const Vec3f& foot, const Vec3f& way) const {
+  float lowest = triangle.normal.dot(way), highest = lowest;
+  visitWithin(foot, rounding_, [&](std::uint32_t k) {
+    const WallTriangle& other = triangles_[k];
+    if (other.sheet || (footOn(other.corners, foot).place - foot).squaredNorm() > rounding_ * rounding_)
+      return;
+    const float height = other.normal.dot(way);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  });
+  if (lowest >= 0 || highest <= 0) return lowest + highest;
+  for (const Vec3f& corner : triangle.corners)
+    if ((corner - foot).squaredNorm() <= rounding_ * rounding_) return meanNormal(foot).dot(way);
+  // At an edge, the face that the way leaves most steeply: where parts cross there are slivers beside it,
+  // which the mean would count as faces.
+  return -lowest > highest ? lowest : highest;
+}
+
 TriangleTree::Nearest TriangleTree::nearest(const Vec3f& p) const {
   struct Waiting {
     float squared;
@@ -163,18 +181,16 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3f& p) const {
     return {height, triangle.normal};
   }
   const float distance = std::sqrt(least);
-  const Vec3f mean = triangle.sheet ? triangle.normal : meanNormal(foot.place);
-  const bool behind = mean.dot(way) < 0;
   // On the wall itself the way to it has no direction.
   if (distance <= rounding_) {
+    const Vec3f mean = triangle.sheet ? triangle.normal : meanNormal(foot.place);
     const float length = mean.norm();
-    return {triangle.sheet ? distance
-            : behind       ? -distance
-                           : distance,
+    return {triangle.sheet || mean.dot(way) >= 0 ? distance : -distance,
             length > 0 ? Vec3f(mean / length) : triangle.normal};
   }
+  const bool behind = !triangle.sheet && sideAt(triangle, foot.place, way) < 0;
   const Vec3f direction = way / distance;
-  if (triangle.sheet || !behind) return {distance, direction};
+  if (!behind) return {distance, direction};
   return {-distance, -direction};
 }
 

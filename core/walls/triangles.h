@@ -78,6 +78,9 @@ class TriangleTree {
   }
   static bool meets(const Branch& branch, const Vec3f& from, const Vec3f& inverse);
   Vec3f meanNormal(const Vec3f& foot) const;
+  /// Positive where p = foot + way, whose nearest place is `foot` on the border of a triangle that is no
+  /// sheet, is on the side that normals point to.
+  float sideAt(const WallTriangle& triangle, const Vec3f& foot, const Vec3f& way) const;
 
   template <class Wanted, class Visit>
   bool visitWhere(const Wanted& wanted, const Visit& visit) const {

@@ -195,5 +195,73 @@ TEST(Gamma, AutoSaysWhatItTookAndWhy) {
   EXPECT_TRUE(tank(1).make("mean").reason.empty());
 }
 
+/// Planes and facets are told apart by their last bits, for only facets sum over edges.
+bool takesFacets(const Walls& walls, const GammaMethod& automatic) {
+  const PickedGamma facets = walls.make("facets"), product = walls.make("product");
+  Bounds bounds;
+  for (const auto& surface : walls.boundary.surfaces()) bounds.include(surface->bounds());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int k = 0; k < 4000; ++k) {
+    const Vec3d at(unit(random), unit(random), unit(random));
+    const Vec3f p = (bounds.min + at.cwiseProduct(bounds.size())).cast<float>();
+    const float distance = walls.boundary.distance(p);
+    if (distance <= 0 || distance >= kSupport) continue;
+    const GammaSample sample = sampleAt(automatic, p);
+    if (sample.gamma == sampleAt(*facets.method, p).gamma &&
+        sample.gamma != sampleAt(*product.method, p).gamma)
+      return true;
+  }
+  return false;
+}
+
+TEST(Gamma, AutoNamesTheMethodsThatItTakesAndNoOthers) {
+  const auto box = [](const Vec3d& min, const Vec3d& max, double degrees = 0) {
+    const Rotation rotation{.axis = Vec3d::UnitZ(), .degrees = degrees};
+    return std::make_shared<Box>(min, max, Box::Fluid::outside, rotation);
+  };
+  const auto vessel = std::make_shared<Box>(Vec3d::Zero(), Vec3d::Ones(), Box::Fluid::inside);
+  const auto ball = std::make_shared<Sphere>(Vec3d::Constant(0.5), 0.25, Sphere::Fluid::outside);
+  struct Case {
+    std::vector<std::shared_ptr<const Surface>> surfaces;
+    const char* name;
+  };
+  const Case cases[] = {
+      {{vessel, ball}, "product, baked"},
+      {{ball}, "baked"},
+      {{vessel, box({0.4, 0, 0.3}, {0.45, 0.5, 0.7})}, "product, facets"},
+      {{vessel, box({0.4, 0, 0.3}, {0.45, 0.5, 0.7}), ball}, "product, facets, baked"},
+      {{vessel, box({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6})}, "product"},
+      {{vessel, box({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6}, 30)}, "product"},
+      {{vessel, box({0.4, 0.1, 0.4}, {0.6, 0.3, 0.6}, 30)}, "product, facets"},
+      {{vessel, box({0.3, 0.44, 0.44}, {0.41, 0.55, 0.55}, 30), box({0.6, 0.44, 0.44}, {0.71, 0.55, 0.55})},
+       "product"},
+  };
+  for (const Case& one : cases) {
+    const Walls walls(one.surfaces);
+    const PickedGamma picked = walls.make("auto");
+    EXPECT_EQ(picked.name, one.name);
+    EXPECT_EQ(takesFacets(walls, *picked.method), picked.name.find("facets") != std::string::npos)
+        << one.name << ": " << picked.reason;
+  }
+}
+
+/// Of a kernel on the face of three blocks that overlap, each takes half, so that less than nothing is left.
+TEST(Gamma, ASharePastItsRangeIsCounted) {
+  std::vector<std::shared_ptr<const Surface>> blocks;
+  for (int k = 0; k < 3; ++k)
+    blocks.push_back(
+        std::make_shared<Box>(Vec3d(-1, -1, -1), Vec3d(1 + 0.001 * k, 1, 1), Box::Fluid::outside));
+  const Walls overlapping(blocks), one({blocks.front()});
+  for (const std::string_view name : {"facets", "product", "auto"}) {
+    const PickedGamma many = overlapping.make(name), single = one.make(name);
+    EXPECT_EQ(sampleAt(*many.method, {0, 1.001F, 0}).gamma, 0.0F);
+    EXPECT_EQ(many.method->takeOutOfRange(), 1) << name;
+    EXPECT_EQ(many.method->takeOutOfRange(), 0) << name;
+    EXPECT_GT(sampleAt(*single.method, {0, 1.001F, 0}).gamma, 0.4F);
+    EXPECT_EQ(single.method->takeOutOfRange(), 0) << name;
+  }
+}
+
 }  // namespace
 }  // namespace migiwa

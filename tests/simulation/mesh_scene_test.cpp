@@ -226,7 +226,7 @@ TEST_F(MeshScene, ACupWithoutThicknessRunsOverAtItsRim) {
 /// Boxes, balls and tubes that overlap, touch or nest, in a tank full of water: none starts or gets inside,
 /// none is lost, and no energy comes from nowhere.
 TEST_F(MeshScene, RandomUnionsAreSolids) {
-  std::mt19937 random(11);
+  std::mt19937 random(11), anywhere(12);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int round = 0; round < 200; ++round) {
     std::vector<TriangleMesh> parts;
@@ -253,10 +253,26 @@ TEST_F(MeshScene, RandomUnionsAreSolids) {
                   wallText("outside") +
                   R"( ] }, "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [1, 0.8, 1] } ] })"),
         2);
+    const Scene& made = simulation.scene();
+    const auto wall = made.surfaces[1]->forSupport(static_cast<float>(made.supportRadius()));
+    for (int k = 0; k < 300; ++k) {
+      const Vec3d p = Vec3d(0.5, 0.5, 0.5) + 0.5 * Vec3d(unit(anywhere), unit(anywhere), unit(anywhere));
+      Vec3f normal;
+      const float distance = (wall != nullptr ? wall : made.surfaces[1])->distance(p.cast<float>(), normal);
+      const bool inside = windingNumber(mesh, p) > 0.5;
+      if (std::abs(distance) > 1e-5F) {
+        ASSERT_EQ(distance < 0, inside) << round << ": " << p.transpose();
+      }
+    }
     const double start = energyOf(simulation.view());
+    const std::size_t filled = simulation.view().positions.size();
+    for (const Float4& p : simulation.view().positions)
+      ASSERT_LT(windingNumber(mesh, p.xyz().cast<double>()), 0.5) << round;
     for (int frame = 0; frame < 30; ++frame) simulation.advanceFrame();
     ASSERT_FALSE(simulation.stopped()) << round;
     EXPECT_LE(energyOf(simulation.view()), start + 0.05) << round;
+    EXPECT_EQ(simulation.statistics().lostParticles, 0) << round;
+    EXPECT_EQ(simulation.view().positions.size(), filled) << round;
     for (const Float4& p : simulation.view().positions)
       ASSERT_LT(windingNumber(mesh, p.xyz().cast<double>()), 0.5) << round;
   }

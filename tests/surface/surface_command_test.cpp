@@ -57,6 +57,28 @@ TEST_F(SurfaceCommand, OfExportedParticlesIsThatOfTheRun) {
   EXPECT_EQ(list("free/drop_000001_surface.obj.json").at("files").at(0).at("wet_triangles"), 0);
 }
 
+/// Of a tap that opens after the first frames.
+TEST_F(SurfaceCommand, FramesWithoutParticlesAreMeshesWithoutTriangles) {
+  std::ofstream(folder_ / "tap.json") << R"({"format": 1, "duration": 0.3, "particle_spacing": 0.05,
+      "emitters": [{"shape": "disc", "center": [0.3, 0.5, 0.3], "radius": 0.1, "direction": [0, -1, 0],
+                    "speed": 1, "start": 0.15}],
+      "boundary": {"surfaces": [{"shape": "box", "fluid": "inside", "min": [0, 0, 0], "max": [0.6, 0.6, 0.6]}]}})";
+  ASSERT_EQ(run({"surface", "tap.json", "--every", "0.1", "--out", "mesh"}).code, 0);
+  for (const std::string format : {"ply", "vtk"}) {
+    ASSERT_EQ(
+        run({"simulate", "tap.json", "--export", "particles", "--every", "0.1", "--format", format}).code, 0);
+    std::vector<std::string> command{"surface", "tap.json", "--out", format, "--particles"};
+    for (const char* frame : {"0", "1", "2", "3"})
+      command.push_back("particles/tap_00000" + std::string(frame) + "." + format);
+    const Outcome outcome = run(command);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const std::string frame : {"0", "1", "2", "3"})
+      EXPECT_EQ(readAll(folder_ / format / ("tap_00000" + frame + "_surface.ply")),
+                readAll(folder_ / "mesh" / ("tap_surface_00000" + frame + ".ply")))
+          << format << ' ' << frame;
+  }
+}
+
 TEST_F(SurfaceCommand, NamesAllThatIsWrongAndWritesNothing) {
   std::ofstream(folder_ / "empty.ply") << "ply\nformat ascii 1.0\nelement vertex 0\nproperty float "
                                           "x\nproperty float y\nproperty float z\nend_header\n";
