@@ -315,9 +315,10 @@ Command viewCommand() {
               .range = {{1, 1'000'000'000}}}},
             [options](const CommonOptions& common) { return view(*options, common); },
             "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
-            "Keys: space plays and pauses, right arrow steps, R resets, C corrects or not, H hides the "
-            "panels,\n"
-            "P saves a picture here as migiwa_0001.png and so on.\n"
+            "Keys: space plays and pauses, right and left arrow step a frame forth and back, Home and End "
+            "go\n"
+            "to the ends of the time line, R begins anew, C corrects or not, H hides the panels, P saves a\n"
+            "picture here as migiwa_0001.png and so on.\n"
             "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
             "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
       }};

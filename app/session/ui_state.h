@@ -18,6 +18,28 @@ struct SceneEditor;
 struct WhatIfModel;
 class StageHistory;
 
+/// The past of the run that can be gone back to, and where in it the run is.
+struct TimeLineView {
+  struct Branch {
+    int number = 0;
+    std::string name;            ///< what was changed where it began, such as "/solver/tolerance=0.01"
+    double from = 0, until = 0;  ///< (s)
+    std::vector<double> kept;    ///< times of the states that are kept (s)
+  };
+  std::vector<Branch> branches;  ///< in the order in which they began; none: not offered
+  int branch = 0;                ///< the number of the present one
+  long frame = 0;
+  double time = 0;        ///< (s)
+  bool underWay = false;  ///< on its way to another time
+  std::size_t bytes = 0;  ///< that the states take
+
+  const Branch* present() const {
+    for (const Branch& one : branches)
+      if (one.number == branch) return &one;
+    return nullptr;
+  }
+};
+
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
   bool playing = false;     ///< or would, if nothing held it
@@ -30,6 +52,7 @@ struct RunStatus {
   /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,
   /// or after a reset.
   std::vector<std::string> settingsFaults{};
+  TimeLineView line{};
 };
 
 /// How the scene is looked at.
@@ -43,9 +66,17 @@ struct ViewState {
   bool water = false;  ///< the fluid's surface in place of its particles
 };
 
+/// A place on the time line.
+struct TimePlace {
+  int branch = 0;   ///< its number
+  double time = 0;  ///< (s)
+};
+
 /// What the user asked for in one frame.
 struct UiCommands {
   bool play = false, pause = false, step = false, reset = false;
+  bool stepBack = false;
+  std::optional<TimePlace> goTo;
   bool settings = false;  ///< the settings were changed
   bool savePicture = false;
   bool saveState = false, loadState = false;

@@ -58,6 +58,13 @@ void performancePanel(PanelModel& model);
 void energyPanel(PanelModel& model);
 void gaugesPanel(PanelModel& model);
 
+// The time line under the scene: a row for each branch, with the states that are kept, on which one goes
+// back.
+
+/// With a row for each of so many branches, as far as rows are shown (pixels); `line`: height of the text.
+int timeLineHeight(std::size_t branches, float line);
+void timeLineStrip(PanelModel& model, ImVec2 corner, ImVec2 size);
+
 // The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
 
 struct Fonts {

@@ -84,7 +84,7 @@ void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) 
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
                          int height) {
   if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
-  const Rect area = ui_.sceneArea(width, height, view_.panels);
+  const Rect area = ui_.sceneArea(width, height, view_.panels, run.line.branches.size());
 
   // The first frame's panels know their own size only once they have been laid out.
   if (!laidOut_) {
@@ -148,7 +148,8 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
   if (view_.panels) {
     PanelModel model{frame.info,     run,      options_.timings, scene_,          bounds_, settings_, view_,
                      !nodes.empty(), commands, options_.editor,  options_.whatIf, history_};
-    ui_.panels(model, area.height);
+    ui_.panels(model, target_->height());
+    if (!run.line.branches.empty()) ui_.timeLine(model, area);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
   return commands;
@@ -214,6 +215,11 @@ void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& com
   if (input.control || input.alt) return;
   if (pressed(Key::space)) (run.playing ? commands.pause : commands.play) = true;
   if (pressed(Key::right)) commands.step = true;
+  if (pressed(Key::left)) commands.stepBack = true;
+  if (const TimeLineView::Branch* branch = run.line.present()) {
+    if (pressed(Key::home)) commands.goTo = {branch->number, branch->from};
+    if (pressed(Key::end)) commands.goTo = {branch->number, branch->until};
+  }
   if (pressed(Key::r)) commands.reset = true;
   if (pressed(Key::p)) commands.savePicture = true;
   if (pressed(Key::h)) view_.panels = !view_.panels;

@@ -35,6 +35,8 @@ void applyRequest(const UiCommands& commands, const Settings& settings, Simulati
   if (commands.play) simulation.play();
   if (commands.pause) simulation.pause();
   if (commands.step) simulation.step();
+  if (commands.stepBack) simulation.stepBack();
+  if (commands.goTo) simulation.goTo(commands.goTo->branch, commands.goTo->time);
 }
 
 /// Begins when the picture before it is kept, so that no two take the same name. An empty future: none was.
@@ -91,7 +93,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
       window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
     }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
-    if (const std::optional<Settings> inForce = simulation->takeRefusal()) {
+    if (const std::optional<Settings> inForce = simulation->takeSettings()) {
       viewer.setSettings(*inForce);
       redraws = kFramesAfterInput;
     }

@@ -5,6 +5,7 @@ As a program it does what it reads, line by line, until there is no more:
     key NAME        presses and releases a key
     click X Y       moves there (pixels of the window, from the top left) and clicks
     move X Y        moves there
+    drag X Y U V    presses at X, Y, moves to U, V in steps, and lets go
     close           asks the window to close, as its frame's button would
 """
 
@@ -78,10 +79,20 @@ def main():
             time.sleep(0.1)
             if word == "click":
                 hands.click()
+        elif word == "drag":
+            (x, y), (u, v) = (tuple(int(n) for n in rest[k : k + 2]) for k in (0, 2))
+            hands.move((place.x + x, place.y + y))
+            time.sleep(0.1)
+            hands.fake(X.ButtonPress, LEFT)
+            for k in range(1, 9):
+                time.sleep(0.05)
+                hands.move((place.x + x + (u - x) * k // 8, place.y + y + (v - y) * k // 8))
+            time.sleep(0.1)
+            hands.fake(X.ButtonRelease, LEFT)
         elif word == "close":
             hands.close()
         else:
-            sys.exit(f"expected key, click, move or close, found {line!r}")
+            sys.exit(f"expected key, click, move, drag or close, found {line!r}")
 
 
 if __name__ == "__main__":
