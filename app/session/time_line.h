@@ -19,7 +19,7 @@ class TimeLine {
  public:
   /// States are kept this far apart, or this many frames, whichever comes first.
   static constexpr double kInterval = 0.1;  // (s)
-  static constexpr long kMostFrames = 20;
+  static constexpr long kMostFrames = 8;
   static constexpr std::size_t kLimit = std::size_t{512} << 20U;
   /// Branches that there may be; beyond that the oldest go, but for the first and the one that runs.
   static constexpr std::size_t kMostBranches = 12;

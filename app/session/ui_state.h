@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -80,6 +81,42 @@ struct UiCommands {
   bool settings = false;  ///< the settings were changed
   bool savePicture = false;
   bool saveState = false, loadState = false;
+};
+
+// "Looking in": one particle, its neighbours, and what walls take of its support.
+
+/// Gamma at a place by one method.
+struct MethodGamma {
+  std::string name;
+  std::optional<double> gamma;
+  std::string fault;  ///< why there is none: the method is not for these walls
+};
+
+/// What walls are at a place and a time.
+struct WallAnswers {
+  Vec3f at = Vec3f::Zero();  ///< (m)
+  double time = 0;           ///< (s)
+  double reference = 1;      ///< gamma by far more directions than any method has
+  std::vector<MethodGamma> methods;
+  std::vector<float> distances;  ///< from walls to the vertices of the support ball (m), BallMesh::unit()
+  bool complete = false;         ///< no method is still to be made
+  std::string fault{};           ///< why nothing is known
+};
+
+struct PickedParticle {
+  std::uint32_t id = 0;
+  Vec3f position = Vec3f::Zero(), velocity = Vec3f::Zero();  ///< (m), (m/s)
+  float density = 0, gamma = 0, lambda = 0;                  ///< as in a FrameView
+  std::optional<float> pressure;                             ///< (Pa)
+  std::uint32_t neighbours = 0;                              ///< in the last step
+  std::vector<Vec3f> around;                                 ///< places of those in its support now (m)
+};
+
+struct InspectModel {
+  std::optional<std::uint32_t> id;                ///< of the particle that is looked into
+  std::optional<PickedParticle> picked, hovered;  ///< as they are in the frame that is shown
+  double time = 0;                                ///< of that frame (s)
+  std::optional<WallAnswers> walls;               ///< the last that is known
 };
 
 struct PanelModel {

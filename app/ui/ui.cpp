@@ -175,6 +175,12 @@ void Ui::panels(PanelModel& model, int height) {
   ImGui::End();
 }
 
+void Ui::inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,
+                   const Projection& projection, const Rect& area) const {
+  inspectorOverlay(model, frame, projection, area);
+  inspectorCard(model, frame, origin, area);
+}
+
 void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
   sceneEditorWindow(editor, area, state_->fonts);
 }

@@ -65,6 +65,14 @@ void gaugesPanel(PanelModel& model);
 int timeLineHeight(std::size_t branches, float line);
 void timeLineStrip(PanelModel& model, ImVec2 corner, ImVec2 size);
 
+// The particle that is looked into.
+
+/// Over the picture: its neighbours and its support ball, with the part behind walls shaded.
+void inspectorOverlay(const InspectModel& model, const FrameInfo& frame, const Projection& projection,
+                      const Rect& area);
+/// In the upper right corner of `area`: its values, and gamma by every method.
+void inspectorCard(InspectModel& model, const FrameInfo& frame, const Vec3d& origin, const Rect& area);
+
 // The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
 
 struct Fonts {

@@ -36,12 +36,12 @@ Surroundings surroundings(const Scene& scene, WallDrawing walls) {
   return result;
 }
 
+}  // namespace
+
 bool contains(const Rect& area, const InputState& input) {
   const int x = static_cast<int>(input.mouseX) - area.x, y = static_cast<int>(input.mouseY) - area.y;
   return input.mouseInside && x >= 0 && y >= 0 && x < area.width && y < area.height;
 }
-
-}  // namespace
 
 double scaleFor(int width, int height) {
   return std::clamp(std::min(width / 1280.0, height / 720.0), 0.8, 4.0);
@@ -97,19 +97,24 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   }
 
   ui_.begin(width, height, input);
+  // What is drawn over the picture is drawn for the camera of the picture.
+  moveCamera(input, area);
+  inspect(frame, input, area);
   UiCommands commands = drawUi(frame, run, area);
   if (!ui_.wantsKeyboard()) keys(input, run, commands);
-  moveCamera(input, area);
   last_ = input;
 
   target_->beginScene();
-  const Look& look = scene_.view.look;
-  const Shot shot{view_.camera, view_.clip,  view_.color, colorRange(view_.color),
-                  view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
-  renderer_.draw(asShown(frame), shot, *target_);
+  renderer_.draw(asShown(frame), shot(area), *target_);
   target_->beginOverlay();
   ui_.end(true);
   return commands;
+}
+
+Shot Viewer::shot(const Rect& area) const {
+  const Look& look = scene_.view.look;
+  return {view_.camera, view_.clip,  view_.color, colorRange(view_.color),
+          view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
 }
 
 FrameView Viewer::asShown(const FrameView& frame) const {
@@ -145,6 +150,9 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
     above.height -= ui_.legendHeight();
     ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
   }
+  if (options_.inspect != nullptr)
+    ui_.inspector(*options_.inspect, frame.info, scene_.origin,
+                  makeProjection(view_.camera, target_->width(), target_->height(), area), area);
   if (view_.panels) {
     PanelModel model{frame.info,     run,      options_.timings, scene_,          bounds_, settings_, view_,
                      !nodes.empty(), commands, options_.editor,  options_.whatIf, history_};
@@ -191,7 +199,8 @@ void Viewer::moveCamera(const InputState& input, const Rect& area) {
 
   sinceClick_ += input.seconds;
   if (pressed && free) {
-    if (sinceClick_ < kDoubleClickSeconds) {
+    doubleClicked_ = sinceClick_ < kDoubleClickSeconds;
+    if (doubleClicked_) {
       const auto point = pointAt(static_cast<int>(input.mouseX), static_cast<int>(input.mouseY), area);
       if (point) lookAt(view_.camera, *point);
     }

@@ -1,6 +1,7 @@
 // The picture with its panels, and the window's loop.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -32,6 +33,8 @@ struct ViewerOptions {
   SceneEditor* editor = nullptr;
   /// Settings to be tried on a copy; null: not offered. Outlives the viewer.
   WhatIfModel* whatIf = nullptr;
+  /// The particle that is looked into; null: particles cannot be picked. Outlives the viewer.
+  InspectModel* inspect = nullptr;
   bool water = false;  ///< ViewState::water to begin with
 };
 
@@ -69,6 +72,10 @@ class Viewer {
   UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
   /// With the water's surface only where it is to be seen.
   FrameView asShown(const FrameView& frame) const;
+  Shot shot(const Rect& area) const;
+  void inspect(const FrameView& frame, const InputState& input, const Rect& area);
+  bool hidden(const FrameView& frame, std::size_t particle, const InputState& input, const Rect& area) const;
+  void lookInto(const FrameView& frame);
   void moveCamera(const InputState& input, const Rect& area);
   void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
@@ -88,8 +95,18 @@ class Viewer {
   InputState last_;
   bool laidOut_ = false;
   bool draggingScene_ = false;
-  double sinceClick_ = 0;
+  std::optional<std::array<float, 2>> pressedAt_;  ///< where the left button went down on the scene
+  double sinceClick_ = 1;                          ///< (s)
+  bool doubleClicked_ = false;                     ///< by the last press
 };
+
+/// Whether a place of the picture (pixels, from the top left) is in `area` and the mouse in the picture.
+bool contains(const Rect& area, const InputState& input);
+
+/// The particle that a picture of this size shows at a place of it (pixels, from the top left): the first
+/// sphere that the ray of sight meets, of those that the shot does not cut away. Its index in the frame.
+std::optional<std::size_t> pickParticle(const FrameView& frame, const Shot& shot, int width, int height,
+                                        double x, double y);
 
 // What a window shows while its scene is being prepared.
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/platform/context.h"
+#include "app/session/probe.h"
 #include "app/session/session.h"
 #include "app/viewer/viewer.h"
 #include "core/base/messages.h"
@@ -65,8 +66,10 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
   SceneEditor editor = makeEditor(session);
   WhatIfModel whatIf;
   WhatIfSession trials(options.threads);
+  InspectModel inspect;
+  ProbeSession probes;
   Viewer viewer(simulation->scene(), simulation->walls(),
-                {.scale = window.contentScale(), .editor = &editor, .whatIf = &whatIf});
+                {.scale = window.contentScale(), .editor = &editor, .whatIf = &whatIf, .inspect = &inspect});
   if (options.playing) simulation->play();
 
   FrameSnapshot frame;
@@ -83,6 +86,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
         if (change->scene) trials.forget(whatIf, *simulation);
+        if (change->simulation) probes.forget(inspect);
         if (change->scene) applyChange(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
@@ -93,6 +97,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
       window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
     }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
+    if (probes.poll(inspect, simulation->scene(), viewer.settings())) redraws = kFramesAfterInput;
     if (const std::optional<Settings> inForce = simulation->takeSettings()) {
       viewer.setSettings(*inForce);
       redraws = kFramesAfterInput;

@@ -6,6 +6,7 @@ As a program it does what it reads, line by line, until there is no more:
     click X Y       moves there (pixels of the window, from the top left) and clicks
     move X Y        moves there
     drag X Y U V    presses at X, Y, moves to U, V in steps, and lets go
+    wheel N         turns the wheel N notches, away where N is positive
     close           asks the window to close, as its frame's button would
 """
 
@@ -89,10 +90,12 @@ def main():
                 hands.move((place.x + x + (u - x) * k // 8, place.y + y + (v - y) * k // 8))
             time.sleep(0.1)
             hands.fake(X.ButtonRelease, LEFT)
+        elif word == "wheel":
+            hands.click(UP if int(rest[0]) > 0 else DOWN, abs(int(rest[0])))
         elif word == "close":
             hands.close()
         else:
-            sys.exit(f"expected key, click, move, drag or close, found {line!r}")
+            sys.exit(f"expected key, click, move, drag, wheel or close, found {line!r}")
 
 
 if __name__ == "__main__":
