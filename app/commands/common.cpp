@@ -286,13 +286,12 @@ void savePicture(const Image& image) {
 
 int view(const ViewOptions& options, const CommonOptions& common) {
   const fs::path file = options.scene.empty() ? defaultScene() : fs::path(options.scene);
-  const auto read = [&] {
-    Scene scene = readScene(file, common.overrides);
-    requireSteppable(scene.boundary, scene.file);
-    return scene;
-  };
-  runWindow(file.stem().string(), read,
-            {common.threads, common.overrides, !options.paused, options.frames, savePicture});
+  const auto read = [&] { return openScene(file, common.overrides); };
+  WindowOptions window{common.threads, common.overrides, !options.paused, options.frames, savePicture};
+  window.water = options.scene.empty();
+  window.gallery = galleryEntries;
+  window.open = [](const fs::path& other) { return openScene(other, {}); };
+  runWindow(file.stem().string(), read, window);
   return kDone;
 }
 
@@ -306,7 +305,7 @@ Command viewCommand() {
             {{.name = "scene",
               .target = &options->scene,
               .value = "SCENE",
-              .help = "Scene file; left out: scenes/dam_break.json."},
+              .help = "A scene, mesh, points or SLIM file; left out: scenes/dam_break.json, as water."},
              {.name = "--paused", .target = &options->paused, .help = "Does not start by itself."},
              {.name = "--frames",
               .target = &options->frames,

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -119,6 +120,25 @@ struct InspectModel {
   std::optional<WallAnswers> walls;               ///< the last that is known
 };
 
+// The gallery: what can be opened.
+
+struct GalleryEntry {
+  std::filesystem::path file, picture;  ///< the scene's, and a small PNG of it; empty: none
+  std::string name, description;
+  bool recent = false;         ///< one that was opened last
+  std::uintptr_t texture = 0;  ///< of the picture, once it was drawn
+};
+
+struct GalleryModel {
+  std::vector<GalleryEntry> entries;
+  bool open = false;
+  std::string typed;                         ///< name of a file
+  std::optional<std::filesystem::path> ask;  ///< what is to be opened; cleared by whoever does it
+  bool cancel = false;                       ///< what is being opened is not to be
+  std::string opening;                       ///< what is being opened, and how far that is; empty: nothing
+  std::vector<std::string> faults;           ///< of what could not be opened
+};
+
 struct PanelModel {
   const FrameInfo& frame;
   const RunStatus& run;
@@ -129,8 +149,9 @@ struct PanelModel {
   ViewState& view;
   bool hasNodes;  ///< some wall has nodes to show
   UiCommands& commands;
-  SceneEditor* editor;  ///< null: the scene's text is not offered
-  WhatIfModel* whatIf;  ///< null: not offered
+  SceneEditor* editor;    ///< null: the scene's text is not offered
+  WhatIfModel* whatIf;    ///< null: not offered
+  GalleryModel* gallery;  ///< null: not offered
   const StageHistory& history;
 };
 

@@ -160,8 +160,8 @@ void methodRows(const WallAnswers& walls) {
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", method.fault.c_str());
       continue;
     }
-    row(method.name.c_str(), formatNumber("%.5f", *method.gamma) +
-                                 formatNumber("   %+.5f", *method.gamma - walls.reference));
+    row(method.name.c_str(),
+        formatNumber("%.5f", *method.gamma) + formatNumber("   %+.5f", *method.gamma - walls.reference));
   }
   if (!walls.complete) faintText("more methods are being made ...");
 }

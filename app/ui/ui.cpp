@@ -185,6 +185,10 @@ void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
   sceneEditorWindow(editor, area, state_->fonts);
 }
 
+void Ui::gallery(GalleryModel& gallery, const Rect& area) const {
+  galleryWindow(gallery, area, state_->fonts);
+}
+
 void Ui::caption(const Caption& caption, const Rect& area) const {
   drawCaption(caption, area, state_->fonts);
 }

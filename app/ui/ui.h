@@ -46,6 +46,7 @@ class Ui {
   /// Under the scene, `area`, which left room for it.
   void timeLine(PanelModel& model, const Rect& area) const;
   void sceneEditor(SceneEditor& editor, const Rect& area) const;
+  void gallery(GalleryModel& gallery, const Rect& area) const;
   /// The particle that is looked into, over the picture of `area` as `projection` shows it, and its card.
   /// `origin`: what positions are relative to (m).
   void inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,

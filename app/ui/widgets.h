@@ -127,6 +127,9 @@ void gaugePlot(std::span<const GaugeSample> samples, float height);
 /// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
 void errorPlot(std::span<const IterationError> errors, double tolerance, float height);
 
+/// Draws the gallery's window over `area`, if it is open.
+void galleryWindow(GalleryModel& model, const Rect& area, const Fonts& fonts);
+
 // Colours and spacings of panels and of the text on pictures.
 
 namespace theme {

@@ -154,13 +154,28 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
     ui_.inspector(*options_.inspect, frame.info, scene_.origin,
                   makeProjection(view_.camera, target_->width(), target_->height(), area), area);
   if (view_.panels) {
-    PanelModel model{frame.info,     run,      options_.timings, scene_,          bounds_, settings_, view_,
-                     !nodes.empty(), commands, options_.editor,  options_.whatIf, history_};
+    PanelModel model{
+        frame.info,     run,      options_.timings, scene_,          bounds_,          settings_, view_,
+        !nodes.empty(), commands, options_.editor,  options_.whatIf, options_.gallery, history_};
     ui_.panels(model, target_->height());
     if (!run.line.branches.empty()) ui_.timeLine(model, area);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
+  if (options_.gallery != nullptr && options_.gallery->open) drawGallery(area);
   return commands;
+}
+
+/// The pictures of entries become textures when they are first to be seen.
+void Viewer::drawGallery(const Rect& area) {
+  for (GalleryEntry& entry : options_.gallery->entries) {
+    if (entry.texture != 0 || entry.picture.empty()) continue;
+    const std::optional<Image> picture = readPng(entry.picture);
+    entry.picture.clear();
+    if (!picture) continue;
+    galleryPictures_.push_back(makePictureTexture(*picture));
+    entry.texture = galleryPictures_.back().name();
+  }
+  ui_.gallery(*options_.gallery, area);
 }
 
 Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {

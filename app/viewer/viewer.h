@@ -35,6 +35,8 @@ struct ViewerOptions {
   WhatIfModel* whatIf = nullptr;
   /// The particle that is looked into; null: particles cannot be picked. Outlives the viewer.
   InspectModel* inspect = nullptr;
+  /// What can be opened; null: not offered. Outlives the viewer.
+  GalleryModel* gallery = nullptr;
   bool water = false;  ///< ViewState::water to begin with
 };
 
@@ -62,6 +64,8 @@ class Viewer {
   /// Shows these from now on: those that the panels asked for were refused.
   void setSettings(const Settings& settings) { settings_ = settings; }
   ViewState& view() { return view_; }
+  /// The particle that is looked into; null where none can be.
+  const InspectModel* inspected() const { return options_.inspect; }
   ColorFieldInfo colorInfo(ColorField field) const {
     return colorFieldInfo(field, referenceSpeed_, scene_.solver.restDensity);
   }
@@ -70,6 +74,7 @@ class Viewer {
 
  private:
   UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
+  void drawGallery(const Rect& area);
   /// With the water's surface only where it is to be seen.
   FrameView asShown(const FrameView& frame) const;
   Shot shot(const Rect& area) const;
@@ -91,6 +96,7 @@ class Viewer {
   Renderer renderer_;
   Ui ui_;
   StageHistory history_;
+  std::vector<GlTexture> galleryPictures_;
   std::optional<RenderTarget> target_;
   InputState last_;
   bool laidOut_ = false;
@@ -146,6 +152,11 @@ struct WindowOptions {
   std::function<void(const Image&)> savePicture;
   /// Told of each frame that has been drawn, on the window's thread.
   std::function<void(const DrawnFrame&)> drawn{};
+  bool water = false;  ///< shows the water's surface to begin with
+  /// What can be opened from the window, and reads it; called on another thread, throws what is wrong with
+  /// it.
+  std::function<std::vector<GalleryEntry>()> gallery{};
+  std::function<Scene(const std::filesystem::path&)> open{};
 };
 
 /// Opens a window on the scene and returns when it is closed. `read` is called on another thread, meanwhile

@@ -331,6 +331,49 @@ TEST(WindowTest, TimeLineGoesBackByKeysByClicksAndByDragging) {
   EXPECT_EQ(shown(kFirst).handling, BoundaryHandling::gamma) << "the panel shows what is in force";
 }
 
+TEST(WindowTest, OpensWhatIsClickedInTheGalleryAndWhatIsDropped) {
+  WindowOptions options;
+  options.playing = false;
+  options.gallery = [] { return std::vector<GalleryEntry>{{"wide.json", {}, "Wide", "A wider tank."}}; };
+  std::vector<std::string> asked;
+  options.open = [&](const std::filesystem::path& file) -> Scene {
+    asked.push_back(file.string());
+    if (file == "wide.json")
+      return parseScene(R"({"format": 1, "particle_spacing": 0.1,
+        "fluid": [{"shape": "box", "min": [0, 0, 0], "max": [1, 0.2, 0.5]}]})",
+                        file);
+    if (file == "/tmp/dropped.obj") return smallScene();
+    throw InputError(file.string(), "expected a scene, found none");
+  };
+  const auto particles = [](std::size_t count) {
+    return [count](const DrawnFrame& drawn) { return drawn.frame.positions.size() == count; };
+  };
+  // The button "Scenes", and the first card.
+  const std::vector<Seen> seen = windowAfter({{"click 158 40", afterFrames(5)},
+                                              {"click 450 180", particles(100)},
+                                              {"drop /tmp/faulty.obj", afterFrames(20)},
+                                              {"drop /tmp/dropped.obj", particles(150)}},
+                                             options);
+  ASSERT_EQ(seen.size(), 4U);
+  EXPECT_EQ(asked, (std::vector<std::string>{"wide.json", "/tmp/faulty.obj", "/tmp/dropped.obj"}));
+  EXPECT_TRUE(seen[1].run.playing) << "what is opened plays";
+  EXPECT_EQ(seen[2].particles, 100U) << "what cannot be opened changes nothing";
+}
+
+TEST(WindowTest, AClickOnAParticleLooksIntoIt) {
+  WindowOptions options;
+  options.playing = false;
+  const auto looksInto = [](bool wanted) {
+    return [wanted](const DrawnFrame& drawn) {
+      const InspectModel* const model = drawn.viewer.inspected();
+      return model->id.has_value() == wanted && (!wanted || (model->picked && model->walls));
+    };
+  };
+  const std::vector<Seen> seen =
+      windowAfter({{"click 700 420", looksInto(true)}, {"key Escape", looksInto(false)}}, options);
+  ASSERT_EQ(seen.size(), 2U);
+}
+
 /// Titles of the windows that there are.
 std::string titles() {
   std::FILE* const pipe = popen(
