@@ -125,12 +125,12 @@ screenshotsOfWindow() {
   local scene=$PWD/scenes/dam_break.json
   say "The window: its start, its gallery, a branch on the time line, a particle that is looked into"
   windowPicture start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
-  windowPicture gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 1\nmove 700 600\nwait 3\nkey p\nwait 3\nclose'
+  windowPicture gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
   windowPicture time_line "$scene" \
     <<<$'wait 5\nkey space\nwait 1\nclick 620 685\nwait 2\nkey c\nkey space\nwait 2\nkey space\nmove 900 300\nwait 1\nkey p\nwait 3\nclose'
   windowPicture particle "$scene" \
     --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' \
-    <<<$'wait 9\nkey space\nwait 2\nclick 780 430\nwait 25\nmove 640 330\nwait 1\nkey p\nwait 3\nclose'
+    <<<$'wait 9\nkey space\nwait 2\nclick 720 408\nwait 25\nmove 200 700\nwait 1\nkey p\nwait 3\nclose'
 }
 
 # screenshotsRayTraced [SIZE [SAMPLES]]

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "app/ui/widgets.h"
@@ -75,7 +76,7 @@ void heading(const char* title, ImFont* bold) {
 /// The name of a file to open, and what became of the last one.
 void fileRow(GalleryModel& model) {
   const float width = 5.6F * ImGui::GetFontSize();
-  ImGui::SetNextItemWidth(std::max(8 * ImGui::GetFontSize(), ImGui::GetContentRegionAvail().x - 2 * width));
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
   const bool entered = ImGui::InputTextWithHint(
       "##file", "a scene, mesh, points or SLIM file; it can be dropped on the window, too", &model.typed,
       ImGuiInputTextFlags_EnterReturnsTrue);
