@@ -107,28 +107,28 @@ screenshotsOfThumbnails() {
   done
 }
 
-# windowPicture NAME [SCENE [OPTION...]] < HANDS: screenshots/window_NAME.webp, the first picture that the hands at the window keep with
-# the key P (tests/render/window_hands.py).
+# windowPicture NAME [SCENE [OPTION...]] < HANDS: screenshots/NAME.webp, the first picture that the hands at the window keep
+# with the key P (tests/render/window_hands.py).
 windowPicture() {
-  local name=$1 folder=out/screenshots/window_$1 root=$PWD
+  local name=$1 folder=out/screenshots/$1 root=$PWD
   mkdir -p "$folder"
   rm -f "$folder"/migiwa_*.png
   cat >"$folder/hands"
   # shellcheck disable=SC2016
   (cd "$folder" && MIGIWA_CACHE=$PWD/cache xvfb-run -a -s "-screen 0 1280x720x24 -noreset" bash -c \
     '"$0" view "${@:2}" & /usr/bin/python3 "$1" <hands; wait' "$root/$migiwa" "$root/tests/render/window_hands.py" "${@:2}")
-  cwebp -quiet -q 85 "$folder/migiwa_0001.png" -o "screenshots/window_$name.webp"
+  cwebp -quiet -q 85 "$folder/migiwa_0001.png" -o "screenshots/$name.webp"
 }
 
 screenshotsOfWindow() {
   setup test
   local scene=$PWD/scenes/dam_break.json
   say "The window: its start, its gallery, a branch on the time line, a particle that is looked into"
-  windowPicture start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
-  windowPicture gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
-  windowPicture time_line "$scene" \
+  windowPicture window_start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
+  windowPicture window_gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
+  windowPicture window_time_line "$scene" \
     <<<$'wait 5\nkey space\nwait 1\nclick 620 685\nwait 2\nkey c\nkey space\nwait 2\nkey space\nmove 900 300\nwait 1\nkey p\nwait 3\nclose'
-  windowPicture particle "$scene" \
+  windowPicture window_particle "$scene" \
     --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' \
     <<<$'wait 9\nkey space\nwait 2\nclick 720 408\nwait 25\nmove 200 700\nwait 1\nkey p\nwait 3\nclose'
 }
@@ -196,6 +196,5 @@ command_screenshots() {
   single stirred_tank stirred_tank 1.5 --size 640x360
   single wave_machine wave_machine 3.3 --size 640x360
   single faucet faucet 3 --size 800x450
-  single window dam_break 0.8 --ui
   ls -l screenshots
 }

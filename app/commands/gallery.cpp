@@ -2,6 +2,7 @@
 // made around a mesh, points or a SLIM surface.
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
 #include "app/commands/command.h"
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostRecent = 6;
 /// Particles along the diagonal of a shape that is dropped on the window.
 constexpr double kResolution = 30;
+/// Of a mesh that becomes a wall as it is; a SLIM surface is fitted to larger ones.
+constexpr std::size_t kMostTriangles = 5000;
 
 /// The root of a JSON file; null for what is none.
 Json rootOf(const fs::path& file) {
@@ -98,13 +101,17 @@ Json sceneAround(const Json& surface, const Bounds& bounds, const std::string& n
   Vec3d waterLow = middle - block, waterHigh = middle + block;
   waterLow.y() = bounds.max.y() + 0.1 * diagonal;
   waterHigh.y() = bounds.max.y() + 0.6 * diagonal;
+  // Boxes are filled in whole spacings.
+  const double spacing = diagonal / kResolution;
+  for (int k = 0; k < 3; ++k)
+    waterHigh[k] = waterLow[k] + spacing * std::max(1.0, std::round((waterHigh[k] - waterLow[k]) / spacing));
   const Vec3d target(middle.x(), 0.5 * (low.y() + high.y()), middle.z());
   Json scene = Json::object();
   scene["format"] = 1;
   scene["name"] = name;
   scene["description"] = "Made around " + name + ": a block of water falls on it in a tank.";
   scene["duration"] = 4;
-  scene["particle_spacing"] = diagonal / kResolution;
+  scene["particle_spacing"] = spacing;
   scene["fluid"] =
       Json::array({{{"shape", "box"}, {"min", vectorOf(waterLow)}, {"max", vectorOf(waterHigh)}}});
   scene["boundary"]["surfaces"] = Json::array(
@@ -131,8 +138,10 @@ fs::path sceneFileFor(const fs::path& file) {
   } else {
     const ImportedShape shape = importShape(file);
     bounds = shape.bounds();
-    if (shape.isMesh()) surface["shape"] = "mesh";
-    surface[shape.isMesh() ? "file" : "mesh"] = fs::absolute(file).string();
+    // A wall of all its triangles takes minutes to prepare where there are many; a fit takes seconds.
+    const bool exact = shape.isMesh() && (shape.mesh.triangles.size() <= kMostTriangles || shape.branching);
+    if (exact) surface["shape"] = "mesh";
+    surface[exact ? "file" : "mesh"] = fs::absolute(file).string();
   }
   const fs::path folder = cacheFolder().empty() ? fs::temp_directory_path() : cacheFolder() / "opened";
   fs::create_directories(folder);

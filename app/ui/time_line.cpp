@@ -62,8 +62,9 @@ void drawRow(const TimeLineView& line, const TimeLineView::Branch& branch, const
 void scrub(const TimeLineView::Branch& branch, const TimeScale& scale, UiCommands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
   const double time = std::clamp(scale.timeAt(io.MousePos.x), branch.from, branch.until);
-  if (ImGui::IsItemActivated() || (ImGui::IsItemActive() && io.MouseDelta.x != 0))
-    commands.goTo = {branch.number, time};
+  // A last move may come in the frame in which the button is let go.
+  const bool pressed = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
+  if (ImGui::IsItemActivated() || (pressed && io.MouseDelta.x != 0)) commands.goTo = {branch.number, time};
   if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
   // Above the line, of which it would hide a part.
   ImGui::SetNextWindowPos({io.MousePos.x, ImGui::GetWindowPos().y - 4}, ImGuiCond_Always, {0.5F, 1});

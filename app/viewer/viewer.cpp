@@ -190,6 +190,8 @@ Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
   if (view_.color == ColorField::pressure && frame.pressure.empty() && !frame.positions.empty())
     caption.rows.emplace_back("pressure", "from the next step on");
   if (run.stopped) caption.rows.emplace_back("state", "stopped");
+  if (options_.gallery != nullptr && !options_.gallery->opening.empty())
+    caption.rows.emplace_back("opening", options_.gallery->opening);
   const std::size_t equals = options_.note.find(" = ");
   if (equals != std::string::npos) {
     caption.rows.emplace_back(options_.note.substr(0, equals), options_.note.substr(equals + 3));

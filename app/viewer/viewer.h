@@ -100,7 +100,7 @@ class Viewer {
   std::optional<RenderTarget> target_;
   InputState last_;
   bool laidOut_ = false;
-  bool draggingScene_ = false;
+  bool draggingScene_ = false, mouseUsed_ = false;
   std::optional<std::array<float, 2>> pressedAt_;  ///< where the left button went down on the scene
   double sinceClick_ = 1;                          ///< (s)
   bool doubleClicked_ = false;                     ///< by the last press
