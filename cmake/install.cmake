@@ -32,6 +32,6 @@ else()
   set(component program)
 endif()
 install(DIRECTORY scenes DESTINATION ${MIGIWA_DATA_DIR} COMPONENT ${component}
-  FILES_MATCHING PATTERN *.json PATTERN *.obj PATTERN README.md
+  FILES_MATCHING PATTERN *.json PATTERN *.obj PATTERN README.md PATTERN thumbnails/*.png
   PATTERN studies EXCLUDE)
 install(DIRECTORY shaders DESTINATION ${MIGIWA_DATA_DIR} COMPONENT ${component})

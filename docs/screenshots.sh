@@ -82,6 +82,57 @@ screenshotsOfFilm() {
     --set '/view/camera={"eye":[0.7,1.55,5.6],"target":[1.62,0.66,0.8],"fov_degrees":32}'
 }
 
+# thumbnail SCENE TIME [RENDER OPTION...]: its picture in the gallery of the window.
+thumbnail() {
+  local scene=$1 time=$2
+  shift 2
+  "$migiwa" render "scenes/$scene.json" --out out/screenshots/thumbnails --times "$time" --style raytraced \
+    --size 240x135 --samples 32 "$@"
+  cp "out/screenshots/thumbnails/${scene}_t$(LC_ALL=C printf %.3f "$time").png" "scenes/thumbnails/$scene.png"
+}
+
+screenshotsOfThumbnails() {
+  say "Pictures of the shipped scenes for the gallery of the window"
+  mkdir -p scenes/thumbnails
+  thumbnail dam_break 0.6
+  thumbnail corner_drop 0.5
+  thumbnail droplet 0.06
+  thumbnail faucet 2
+  thumbnail overflow 3
+  thumbnail bunny 1.2
+  thumbnail wave_machine 2
+  local scene
+  for scene in bowl bowl_degree_2 bunny_inside bunny_inside_degree_1 gamma_edge still_tank stirred_tank thin_wall; do
+    thumbnail "$scene" 1
+  done
+}
+
+# windowPicture NAME [SCENE [OPTION...]] < HANDS: screenshots/NAME.webp, the first picture that the hands at the window keep
+# with the key P (tests/render/window_hands.py).
+windowPicture() {
+  local name=$1 folder=out/screenshots/$1 root=$PWD
+  mkdir -p "$folder"
+  rm -f "$folder"/migiwa_*.png
+  cat >"$folder/hands"
+  # shellcheck disable=SC2016
+  (cd "$folder" && MIGIWA_CACHE=$PWD/cache xvfb-run -a -s "-screen 0 1280x720x24 -noreset" bash -c \
+    '"$0" view "${@:2}" & /usr/bin/python3 "$1" <hands; wait' "$root/$migiwa" "$root/tests/render/window_hands.py" "${@:2}")
+  cwebp -quiet -q 85 "$folder/migiwa_0001.png" -o "screenshots/$name.webp"
+}
+
+screenshotsOfWindow() {
+  setup test
+  local scene=$PWD/scenes/dam_break.json
+  say "The window: its start, its gallery, a branch on the time line, a particle that is looked into"
+  windowPicture window_start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
+  windowPicture window_gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
+  windowPicture window_time_line "$scene" \
+    <<<$'wait 5\nkey space\nwait 1\nclick 620 685\nwait 2\nkey c\nkey space\nwait 2\nkey space\nmove 900 300\nwait 1\nkey p\nwait 3\nclose'
+  windowPicture window_particle "$scene" \
+    --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' \
+    <<<$'wait 9\nkey space\nwait 2\nclick 720 408\nwait 25\nmove 200 700\nwait 1\nkey p\nwait 3\nclose'
+}
+
 # screenshotsRayTraced [SIZE [SAMPLES]]
 screenshotsRayTraced() {
   still_size=${1:-$still_size}
@@ -107,9 +158,11 @@ command_screenshots() {
     rest) screenshotsOfRest && return ;;
     slim) screenshotsOfSlim && return ;;
     film) screenshotsOfFilm && return ;;
+    thumbnails) screenshotsOfThumbnails && return ;;
+    window) screenshotsOfWindow && return ;;
     raytraced) screenshotsRayTraced "${@:2}" && return ;;
     '') ;;
-    *) fail "expected gamma, walls, convergence, rest, slim, film, raytraced or nothing, found $1" ;;
+    *) fail "expected gamma, walls, convergence, rest, slim, film, thumbnails, window, raytraced or nothing, found $1" ;;
   esac
   say "Figure 4 of the paper: cut at the middle plane, four times"
   compareSheet dam_break_compare dam_break --times 0,0.4,0.8,4 --size 480x270
@@ -122,6 +175,8 @@ command_screenshots() {
   screenshotsOfRest
   screenshotsOfSlim
   screenshotsOfFilm
+  screenshotsOfThumbnails
+  screenshotsOfWindow
   screenshotsRayTraced
   say "Figure 6 of the paper: water in a bowl, cut at the middle plane"
   compareSheet bowl_compare bowl --times 0.3,1,6 --size 480x300
@@ -141,6 +196,5 @@ command_screenshots() {
   single stirred_tank stirred_tank 1.5 --size 640x360
   single wave_machine wave_machine 3.3 --size 640x360
   single faucet faucet 3 --size 800x450
-  single window dam_break 0.8 --ui
   ls -l screenshots
 }

@@ -16,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/session/ui_state.h"
 #include "core/base/messages.h"
 #include "core/io/report.h"
 #include "core/scene/scene_file.h"
@@ -84,6 +85,14 @@ Command surfaceCommand();
 /// in. Throws InputError at `option` where it is in neither; `what` such as "a scene file".
 std::filesystem::path shippedPlace(const std::filesystem::path& name, const std::string& option,
                                    const std::string& what);
+
+// What `migiwa view` can open.
+
+/// The scenes that were opened last, and those that are shipped.
+std::vector<GalleryEntry> galleryEntries();
+/// Reads a scene, or makes one around a mesh, points or a SLIM surface, and remembers it as opened. Throws
+/// InputError.
+Scene openScene(const std::filesystem::path& file, const std::vector<Override>& overrides);
 
 // Option values that are lists or pairs, read from their text. Faults name the option.
 

@@ -286,13 +286,12 @@ void savePicture(const Image& image) {
 
 int view(const ViewOptions& options, const CommonOptions& common) {
   const fs::path file = options.scene.empty() ? defaultScene() : fs::path(options.scene);
-  const auto read = [&] {
-    Scene scene = readScene(file, common.overrides);
-    requireSteppable(scene.boundary, scene.file);
-    return scene;
-  };
-  runWindow(file.stem().string(), read,
-            {common.threads, common.overrides, !options.paused, options.frames, savePicture});
+  const auto read = [&] { return openScene(file, common.overrides); };
+  WindowOptions window{common.threads, common.overrides, !options.paused, options.frames, savePicture};
+  window.water = options.scene.empty();
+  window.gallery = galleryEntries;
+  window.open = [](const fs::path& other) { return openScene(other, {}); };
+  runWindow(file.stem().string(), read, window);
   return kDone;
 }
 
@@ -306,7 +305,7 @@ Command viewCommand() {
             {{.name = "scene",
               .target = &options->scene,
               .value = "SCENE",
-              .help = "Scene file; left out: scenes/dam_break.json."},
+              .help = "A scene, mesh, points or SLIM file; left out: scenes/dam_break.json, as water."},
              {.name = "--paused", .target = &options->paused, .help = "Does not start by itself."},
              {.name = "--frames",
               .target = &options->frames,
@@ -315,9 +314,10 @@ Command viewCommand() {
               .range = {{1, 1'000'000'000}}}},
             [options](const CommonOptions& common) { return view(*options, common); },
             "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
-            "Keys: space plays and pauses, right arrow steps, R resets, C corrects or not, H hides the "
-            "panels,\n"
-            "P saves a picture here as migiwa_0001.png and so on.\n"
+            "Keys: space plays and pauses, right and left arrow step a frame forth and back, Home and End "
+            "go\n"
+            "to the ends of the time line, R begins anew, C corrects or not, H hides the panels, P saves a\n"
+            "picture here as migiwa_0001.png and so on.\n"
             "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
             "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
       }};

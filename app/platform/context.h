@@ -65,6 +65,7 @@ struct InputState {
   std::array<bool, kKeyCount> keys{};
   bool control = false, shift = false, alt = false;
   std::vector<unsigned> characters;  ///< typed since the last frame
+  std::vector<std::string> dropped;  ///< names of files that were dropped on the window since then
   double seconds = 1.0 / 60;         ///< since the last frame; for blinking and double clicks only
 
   bool down(MouseButton button) const { return buttons[static_cast<std::size_t>(button)]; }

@@ -87,6 +87,10 @@ void GlfwWindow::State::listen() {
     of(w).input.characters.push_back(character);
     of(w).happened = true;
   });
+  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+    of(w).input.dropped.insert(of(w).input.dropped.end(), paths, paths + count);
+    of(w).happened = true;
+  });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) {
     of(w).input.wheel += static_cast<float>(y);
     of(w).happened = true;
@@ -154,6 +158,7 @@ InputState GlfwWindow::waitForInput(double seconds) {
   input.alt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
   state.input.wheel = 0;
   state.input.characters.clear();
+  state.input.dropped.clear();
 
   double x = 0, y = 0;
   int width = 1, height = 1;

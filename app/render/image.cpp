@@ -31,6 +31,10 @@ unsigned char* deflateForPng(unsigned char* bytes, int size, int* outSize, int /
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb_image.h>
 
 namespace migiwa {
 
@@ -39,6 +43,16 @@ void Image::paste(const Image& source, int x, int y) {
     const std::uint8_t* from = source.pixel(0, row);
     std::copy(from, from + static_cast<std::ptrdiff_t>(source.width) * 4, pixel(x, y + row));
   }
+}
+
+std::optional<Image> readPng(const std::filesystem::path& file) {
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load(file.c_str(), &width, &height, &channels, 4), stbi_image_free);
+  if (!pixels) return std::nullopt;
+  Image image(width, height);
+  std::copy_n(pixels.get(), image.rgba.size(), image.rgba.begin());
+  return image;
 }
 
 std::string encodePng(const Image& image) {
@@ -225,6 +239,18 @@ GlTexture makeColorTexture(const ColorMap& colors) {
   glTextureSubImage1D(texture.name(), 0, 0, kColorMapSize, GL_RGB, GL_UNSIGNED_BYTE, colors.data());
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
+GlTexture makePictureTexture(const Image& picture) {
+  GlTexture texture = makeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), 1, GL_RGBA8, picture.width, picture.height);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, picture.width, picture.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                      picture.rgba.data());
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   return texture;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct Image {
 
 /// The bytes of a PNG file.
 std::string encodePng(const Image& image);
+/// Nothing where there is no such file, or it is none.
+std::optional<Image> readPng(const std::filesystem::path& file);
 
 // The framebuffer that every picture is drawn into, in a window and without one, so that both give the same
 // bytes: four samples a pixel, resolved to a texture that text and panels are then drawn over.
@@ -93,5 +96,8 @@ ColorMap makeWarmColorMap();
 // A colour map as a texture that interpolates between its entries in linear light.
 
 GlTexture makeColorTexture(const ColorMap& colors);
+
+/// A picture as a texture for panels, which draw its values as they are.
+GlTexture makePictureTexture(const Image& picture);
 
 }  // namespace migiwa

@@ -45,13 +45,6 @@ FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderT
   return uniforms;
 }
 
-/// Whether the clip plane cuts away what is at p.
-bool isCut(const Shot& shot, const Vec3f& p) {
-  return shot.clip.enabled &&
-         clipSide(shot) * (static_cast<double>(p[static_cast<Eigen::Index>(shot.clip.axis)]) - shot.clip.at) >
-             0;
-}
-
 /// The triangles that face the ground, with the area that each covers of it.
 std::vector<Float4> groundPatches(std::span<const WallMesh> meshes, const Vec3f& up) {
   std::vector<Float4> patches;
@@ -67,6 +60,12 @@ std::vector<Float4> groundPatches(std::span<const WallMesh> meshes, const Vec3f&
 }
 
 }  // namespace
+
+bool isCut(const Shot& shot, const Vec3f& p) {
+  return shot.clip.enabled &&
+         clipSide(shot) * (static_cast<double>(p[static_cast<Eigen::Index>(shot.clip.axis)]) - shot.clip.at) >
+             0;
+}
 
 Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
     : ground_(makeGround(surroundings.bounds, surroundings.up)),

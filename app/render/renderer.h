@@ -37,6 +37,9 @@ struct Shot {
   Vec3f waterLoss = Vec3f::Zero();  ///< of red, green and blue light in water (1/m)
 };
 
+/// Whether the shot's clip plane cuts away what is at p.
+bool isCut(const Shot& shot, const Vec3f& p);
+
 class Renderer {
  public:
   Renderer(const Surroundings& surroundings, const ColorMap& colors);
@@ -47,6 +50,8 @@ class Renderer {
 
   const Ground& ground() const { return ground_; }
   const NodePass& nodes() const { return nodePass_; }
+  /// Whether some walls are drawn as surfaces, which hide what is behind them.
+  bool hasSurfaces() const { return !meshes_.empty(); }
 
  private:
   void setWalls(const WallDrawing& walls);

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/session/time_line.h"
 #include "app/session/ui_state.h"
 #include "core/base/hash.h"
 #include "core/base/messages.h"
@@ -106,13 +107,19 @@ class SimulationThread {
   void pause();
   /// Pauses, and computes one frame more.
   void step();
-  /// Back to the start, with the settings of now; goes on playing if it did.
+  /// Begins anew at the start, with the settings of now; goes on playing if it did. The past is forgotten.
   void reset();
-  /// Takes effect with the next frame. Where the simulation cannot do with them, the status says why, and
-  /// those of before stay in force: takeRefusal() has them.
+  /// Takes effect with the next frame; at a time that was gone back to a branch begins. Where the simulation
+  /// cannot do with them, the status says why, and those of before stay in force: takeSettings() has them.
   void apply(const Settings& settings);
-  /// The settings in force where others were refused since the last call.
-  std::optional<Settings> takeRefusal();
+  /// The settings in force where since the last call others were refused, or the run has come to a time that
+  /// has its own.
+  std::optional<Settings> takeSettings();
+  /// Pauses, and goes to the frame nearest to a time of a branch that has been computed. Frames on the way
+  /// are not shown, but for the one that it sets out from; a way that is overtaken by another is dropped.
+  void goTo(int branch, double time);
+  /// Pauses, and goes back one frame; before the first one of a branch, to where it went from.
+  void stepBack();
   /// From the next frame on, frames have pressures, or none.
   void watchPressure(bool on);
   /// Frames have the water's surface, the present one too, or none. Where there is no room for it, the status
@@ -159,6 +166,18 @@ class SimulationThread {
   bool refuses(const char* request, bool needsGoodState);
   void begin();
   void stop(std::string why);
+  /// A place that is asked for: a frame or, without one, a time (s).
+  struct Goal {
+    int branch;
+    std::optional<long> frame;
+    double time;
+  };
+  template <class Change>
+  void ask(const char* request, const Change& change);
+  void depart(std::unique_lock<std::mutex>& lock);
+  void travelOn(std::unique_lock<std::mutex>& lock);
+  bool arrived(const Goal& goal) const;
+  void advanceFrame(bool watchPressure);
   void advance(std::unique_lock<std::mutex>& lock);
   void publish(std::unique_lock<std::mutex>& lock);
   std::shared_ptr<const SurfaceMesh> waterOf(const FrameView& frame);
@@ -167,6 +186,7 @@ class SimulationThread {
   const Pace pace_;
   // Of the simulation's thread alone, once it runs.
   std::unique_ptr<Simulation> simulation_;
+  TimeLine line_;
   FrameSnapshot filling_;
   Clock::time_point due_{};
   struct Water;
@@ -189,7 +209,8 @@ class SimulationThread {
   std::optional<std::filesystem::path> load_;
   std::vector<std::promise<StateImage>> captures_;
   int steps_ = 0;
-  std::optional<Settings> settings_, refused_;
+  std::optional<Settings> settings_, settled_;
+  std::optional<Goal> goal_, travel_;  ///< asked for; being carried out
   bool watchPressure_;
   bool watchWater_ = false, hasWater_ = false;  ///< it was asked for; the last frame has it
 

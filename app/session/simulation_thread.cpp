@@ -59,6 +59,8 @@ SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
       scene_(simulation_->scene()),
       walls_(simulation_->walls()),
       watchPressure_(scene.view.color == ColorField::pressure) {
+  line_.begin(*simulation_);
+  status_.line = line_.view(*simulation_);
   finished_.assign(simulation_->drawnView());
   hasFrame_ = true;
   thread_ = std::thread([this] { work(); });
@@ -112,6 +114,7 @@ void SimulationThread::reset() {
   const std::lock_guard lock(mutex_);
   if (refuses("Reset", false)) return;
   reset_ = true;
+  goal_.reset();
   steps_ = 0;
   wake_.notify_one();
 }
@@ -122,9 +125,9 @@ void SimulationThread::apply(const Settings& settings) {
   wake_.notify_one();
 }
 
-std::optional<Settings> SimulationThread::takeRefusal() {
+std::optional<Settings> SimulationThread::takeSettings() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(refused_, std::nullopt);
+  return std::exchange(settled_, std::nullopt);
 }
 
 void SimulationThread::watchPressure(bool on) {
@@ -149,6 +152,7 @@ void SimulationThread::loadState(std::filesystem::path file) {
   const std::lock_guard lock(mutex_);
   if (refuses("Load state", false)) return;
   load_ = std::move(file);
+  goal_.reset();
   steps_ = 0;
   wake_.notify_one();
 }
@@ -182,23 +186,35 @@ bool SimulationThread::takeFrame(FrameSnapshot& frame) {
 
 RunStatus SimulationThread::status() const {
   const std::lock_guard lock(mutex_);
-  return status_;
+  RunStatus status = status_;
+  status.line.underWay = goal_ || travel_;
+  return status;
 }
 
 void SimulationThread::work() {
   std::unique_lock lock(mutex_);
   while (waitForWork(lock)) {
     try {
-      applyRequests(lock);
-      if (!mayAdvance()) continue;
-      if (steps_ > 0) --steps_;
-      advance(lock);
+      // They go elsewhere.
+      if (reset_ || load_) travel_.reset();
+      // Whatever else is asked for is of the place that it is on its way to.
+      if (!travel_) applyRequests(lock);
+      if (goal_) {
+        depart(lock);
+      } else if (travel_) {
+        travelOn(lock);
+      } else if (mayAdvance() && !settings_) {  // what came meanwhile holds for the next frame, too
+        if (steps_ > 0) --steps_;
+        advance(lock);
+      }
     } catch (const std::exception& error) {
       if (!lock.owns_lock()) lock.lock();
+      travel_.reset();
       stop(error.what());
     }
   }
   try {
+    while (save_ && travel_) travelOn(lock);
     if (save_) applySave(lock);
   } catch (const std::exception&) {
     // Nobody is left to tell; an older file stays.
@@ -209,7 +225,7 @@ void SimulationThread::work() {
 /// over.
 bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   const auto asked = [this] {
-    return quit_ || reset_ || settings_ || save_ || load_ || !captures_.empty() ||
+    return quit_ || reset_ || settings_ || save_ || load_ || !captures_.empty() || goal_ || travel_ ||
            (watchWater_ && !hasWater_) || (steps_ > 0 && mayAdvance());
   };
   while (!asked()) {
@@ -250,7 +266,11 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   std::vector<std::string> faults;
   try {
-    if (settings) simulation_->apply(*settings);
+    const Settings before = simulation_->settings();
+    if (settings) {
+      simulation_->apply(*settings);
+      line_.changed(*simulation_, before);
+    }
   } catch (const std::exception& error) {
     faults = texts(error);
   }
@@ -258,10 +278,11 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
     auto again = std::make_unique<Simulation>(scene_, threads_);
     again->apply(simulation_->settings());
     simulation_ = std::move(again);
+    line_.begin(*simulation_);
   }
   Settings inForce = simulation_->settings();
   lock.lock();
-  if (!faults.empty()) refused_ = std::move(inForce);
+  if (!faults.empty()) settled_ = std::move(inForce);
   status_.settingsFaults = std::move(faults);
   if (reset) begin();
   publish(lock);
@@ -301,6 +322,7 @@ void SimulationThread::applyLoad(std::unique_lock<std::mutex>& lock) {
     loaded->apply(simulation_->settings());
     readSave(file, *loaded, passedOver);
     simulation_ = std::move(loaded);
+    line_.begin(*simulation_);
   } catch (const std::exception& error) {
     faults = texts(error);
   }
@@ -317,8 +339,7 @@ void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {
   const bool watchPressure = watchPressure_;
   lock.unlock();
   const auto start = Clock::now();
-  simulation_->watchPressure(watchPressure);
-  simulation_->advanceFrame();
+  advanceFrame(watchPressure);
   const bool stopped = simulation_->stopped();
   const std::string trouble = stopped ? describe(simulation_->statistics()) : "";
   // A late frame is not made up for: time lost would come back as a burst.
@@ -341,7 +362,9 @@ void SimulationThread::publish(std::unique_lock<std::mutex>& lock) {
     fault = std::string("No water, particles instead: ") + error.what();
   }
   filling_.assign(view);
+  TimeLineView line = line_.view(*simulation_);
   lock.lock();
+  status_.line = std::move(line);
   if (!fault.empty()) status_.refused = fault;
   std::swap(filling_, finished_);
   hasFrame_ = true;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +20,28 @@ struct SceneEditor;
 struct WhatIfModel;
 class StageHistory;
 
+/// The past of the run that can be gone back to, and where in it the run is.
+struct TimeLineView {
+  struct Branch {
+    int number = 0;
+    std::string name;            ///< what was changed where it began, such as "/solver/tolerance=0.01"
+    double from = 0, until = 0;  ///< (s)
+    std::vector<double> kept;    ///< times of the states that are kept (s)
+  };
+  std::vector<Branch> branches;  ///< in the order in which they began; none: not offered
+  int branch = 0;                ///< the number of the present one
+  long frame = 0;
+  double time = 0;        ///< (s)
+  bool underWay = false;  ///< on its way to another time
+  std::size_t bytes = 0;  ///< that the states take
+
+  const Branch* present() const {
+    for (const Branch& one : branches)
+      if (one.number == branch) return &one;
+    return nullptr;
+  }
+};
+
 /// How the simulation is doing, apart from its frame.
 struct RunStatus {
   bool playing = false;     ///< or would, if nothing held it
@@ -30,6 +54,7 @@ struct RunStatus {
   /// Why the last change of settings was refused, and those of before stay; empty when it was taken over,
   /// or after a reset.
   std::vector<std::string> settingsFaults{};
+  TimeLineView line{};
 };
 
 /// How the scene is looked at.
@@ -43,12 +68,75 @@ struct ViewState {
   bool water = false;  ///< the fluid's surface in place of its particles
 };
 
+/// A place on the time line.
+struct TimePlace {
+  int branch = 0;   ///< its number
+  double time = 0;  ///< (s)
+};
+
 /// What the user asked for in one frame.
 struct UiCommands {
   bool play = false, pause = false, step = false, reset = false;
+  bool stepBack = false;
+  std::optional<TimePlace> goTo;
   bool settings = false;  ///< the settings were changed
   bool savePicture = false;
   bool saveState = false, loadState = false;
+};
+
+// "Looking in": one particle, its neighbours, and what walls take of its support.
+
+/// Gamma at a place by one method.
+struct MethodGamma {
+  std::string name;
+  std::optional<double> gamma;
+  std::string fault;  ///< why there is none: the method is not for these walls
+};
+
+/// What walls are at a place and a time.
+struct WallAnswers {
+  Vec3f at = Vec3f::Zero();  ///< (m)
+  double time = 0;           ///< (s)
+  double reference = 1;      ///< gamma by far more directions than any method has
+  std::vector<MethodGamma> methods;
+  std::vector<float> distances;  ///< from walls to the vertices of the support ball (m), BallMesh::unit()
+  bool complete = false;         ///< no method is still to be made
+  std::string fault{};           ///< why nothing is known
+};
+
+struct PickedParticle {
+  std::uint32_t id = 0;
+  Vec3f position = Vec3f::Zero(), velocity = Vec3f::Zero();  ///< (m), (m/s)
+  float density = 0, gamma = 0, lambda = 0;                  ///< as in a FrameView
+  std::optional<float> pressure;                             ///< (Pa)
+  std::uint32_t neighbours = 0;                              ///< in the last step
+  std::vector<Vec3f> around;                                 ///< places of those in its support now (m)
+};
+
+struct InspectModel {
+  std::optional<std::uint32_t> id;                ///< of the particle that is looked into
+  std::optional<PickedParticle> picked, hovered;  ///< as they are in the frame that is shown
+  double time = 0;                                ///< of that frame (s)
+  std::optional<WallAnswers> walls;               ///< the last that is known
+};
+
+// The gallery: what can be opened.
+
+struct GalleryEntry {
+  std::filesystem::path file, picture;  ///< the scene's, and a small PNG of it; empty: none
+  std::string name, description;
+  bool recent = false;         ///< one that was opened last
+  std::uintptr_t texture = 0;  ///< of the picture, once it was drawn
+};
+
+struct GalleryModel {
+  std::vector<GalleryEntry> entries;
+  bool open = false;
+  std::string typed;                         ///< name of a file
+  std::optional<std::filesystem::path> ask;  ///< what is to be opened; cleared by whoever does it
+  bool cancel = false;                       ///< what is being opened is not to be
+  std::string opening;                       ///< what is being opened, and how far that is; empty: nothing
+  std::vector<std::string> faults;           ///< of what could not be opened
 };
 
 struct PanelModel {
@@ -61,8 +149,9 @@ struct PanelModel {
   ViewState& view;
   bool hasNodes;  ///< some wall has nodes to show
   UiCommands& commands;
-  SceneEditor* editor;  ///< null: the scene's text is not offered
-  WhatIfModel* whatIf;  ///< null: not offered
+  SceneEditor* editor;    ///< null: the scene's text is not offered
+  WhatIfModel* whatIf;    ///< null: not offered
+  GalleryModel* gallery;  ///< null: not offered
   const StageHistory& history;
 };
 

@@ -24,11 +24,17 @@ constexpr std::size_t kMostFaultsShown = 4;
 
 void scenePanel(PanelModel& model) {
   SceneEditor& editor = *model.editor;
-  if (ImGui::Button(editor.open ? "Close editor" : "Edit scene", {buttonWidth(2), 0})) {
+  const float width = 5.5F * ImGui::GetFontSize();  // leaves room for the name
+  if (ImGui::Button(editor.open ? "Close editor" : "Edit scene", {width, 0})) {
     editor.open = !editor.open;
     editor.wantsFocus = editor.open;
   }
   ImGui::SameLine();
+  if (model.gallery != nullptr) {
+    if (ImGui::Button("Scenes", {width, 0})) model.gallery->open = !model.gallery->open;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("All shipped scenes, the last opened ones, any other file");
+    ImGui::SameLine();
+  }
   faintText(editor.fileName);
   if (editor.faults.empty()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);

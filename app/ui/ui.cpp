@@ -129,9 +129,17 @@ Ui::~Ui() {
   ImGui_ImplOpenGL3_Shutdown();
 }
 
-Rect Ui::sceneArea(int width, int height, bool panels) const {
-  const int taken = panels ? std::min(static_cast<int>(kPanelWidth * state_->pixels), width / 2) : 0;
-  return {taken, 0, width - taken, height};
+Rect Ui::sceneArea(int width, int height, bool panels, std::size_t branches) const {
+  if (!panels) return {0, 0, width, height};
+  const int taken = std::min(static_cast<int>(kPanelWidth * state_->pixels), width / 2);
+  const int line = branches > 0 ? std::min(timeLineHeight(branches, state_->pixels), height / 2) : 0;
+  return {taken, 0, width - taken, height - line};
+}
+
+void Ui::timeLine(PanelModel& model, const Rect& area) const {
+  const float top = static_cast<float>(area.y + area.height);
+  timeLineStrip(model, {static_cast<float>(area.x), top},
+                {static_cast<float>(area.width), ImGui::GetIO().DisplaySize.y - top});
 }
 
 void Ui::begin(int width, int height, const InputState& input) {
@@ -167,8 +175,18 @@ void Ui::panels(PanelModel& model, int height) {
   ImGui::End();
 }
 
+void Ui::inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,
+                   const Projection& projection, const Rect& area) const {
+  inspectorOverlay(model, frame, projection, area);
+  inspectorCard(model, frame, origin, area);
+}
+
 void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
   sceneEditorWindow(editor, area, state_->fonts);
+}
+
+void Ui::gallery(GalleryModel& gallery, const Rect& area) const {
+  galleryWindow(gallery, area, state_->fonts);
 }
 
 void Ui::caption(const Caption& caption, const Rect& area) const {

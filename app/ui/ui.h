@@ -38,12 +38,19 @@ class Ui {
   Ui(const Ui&) = delete;
   Ui& operator=(const Ui&) = delete;
 
-  /// The part of a picture that panels leave to the scene.
-  Rect sceneArea(int width, int height, bool panels) const;
+  /// The part of a picture that panels, with a time line of so many branches, leave to the scene.
+  Rect sceneArea(int width, int height, bool panels, std::size_t branches = 0) const;
 
   void begin(int width, int height, const InputState& input);
   void panels(PanelModel& model, int height);
+  /// Under the scene, `area`, which left room for it.
+  void timeLine(PanelModel& model, const Rect& area) const;
   void sceneEditor(SceneEditor& editor, const Rect& area) const;
+  void gallery(GalleryModel& gallery, const Rect& area) const;
+  /// The particle that is looked into, over the picture of `area` as `projection` shows it, and its card.
+  /// `origin`: what positions are relative to (m).
+  void inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,
+                 const Projection& projection, const Rect& area) const;
   void caption(const Caption& caption, const Rect& area) const;
   void legend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
               const Rect& area) const;

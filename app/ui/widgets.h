@@ -58,6 +58,21 @@ void performancePanel(PanelModel& model);
 void energyPanel(PanelModel& model);
 void gaugesPanel(PanelModel& model);
 
+// The time line under the scene: a row for each branch, with the states that are kept, on which one goes
+// back.
+
+/// With a row for each of so many branches, as far as rows are shown (pixels); `line`: height of the text.
+int timeLineHeight(std::size_t branches, float line);
+void timeLineStrip(PanelModel& model, ImVec2 corner, ImVec2 size);
+
+// The particle that is looked into.
+
+/// Over the picture: its neighbours and its support ball, with the part behind walls shaded.
+void inspectorOverlay(const InspectModel& model, const FrameInfo& frame, const Projection& projection,
+                      const Rect& area);
+/// In the upper right corner of `area`: its values, and gamma by every method.
+void inspectorCard(InspectModel& model, const FrameInfo& frame, const Vec3d& origin, const Rect& area);
+
 // The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
 
 struct Fonts {
@@ -111,6 +126,9 @@ void gaugePlot(std::span<const GaugeSample> samples, float height);
 
 /// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
 void errorPlot(std::span<const IterationError> errors, double tolerance, float height);
+
+/// Draws the gallery's window over `area`, if it is open.
+void galleryWindow(GalleryModel& model, const Rect& area, const Fonts& fonts);
 
 // Colours and spacings of panels and of the text on pictures.
 

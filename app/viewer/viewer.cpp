@@ -36,12 +36,12 @@ Surroundings surroundings(const Scene& scene, WallDrawing walls) {
   return result;
 }
 
+}  // namespace
+
 bool contains(const Rect& area, const InputState& input) {
   const int x = static_cast<int>(input.mouseX) - area.x, y = static_cast<int>(input.mouseY) - area.y;
   return input.mouseInside && x >= 0 && y >= 0 && x < area.width && y < area.height;
 }
-
-}  // namespace
 
 double scaleFor(int width, int height) {
   return std::clamp(std::min(width / 1280.0, height / 720.0), 0.8, 4.0);
@@ -84,7 +84,7 @@ void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) 
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
                          int height) {
   if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
-  const Rect area = ui_.sceneArea(width, height, view_.panels);
+  const Rect area = ui_.sceneArea(width, height, view_.panels, run.line.branches.size());
 
   // The first frame's panels know their own size only once they have been laid out.
   if (!laidOut_) {
@@ -97,19 +97,24 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   }
 
   ui_.begin(width, height, input);
+  // What is drawn over the picture is drawn for the camera of the picture.
+  moveCamera(input, area);
+  inspect(frame, input, area);
   UiCommands commands = drawUi(frame, run, area);
   if (!ui_.wantsKeyboard()) keys(input, run, commands);
-  moveCamera(input, area);
   last_ = input;
 
   target_->beginScene();
-  const Look& look = scene_.view.look;
-  const Shot shot{view_.camera, view_.clip,  view_.color, colorRange(view_.color),
-                  view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
-  renderer_.draw(asShown(frame), shot, *target_);
+  renderer_.draw(asShown(frame), shot(area), *target_);
   target_->beginOverlay();
   ui_.end(true);
   return commands;
+}
+
+Shot Viewer::shot(const Rect& area) const {
+  const Look& look = scene_.view.look;
+  return {view_.camera, view_.clip,  view_.color, colorRange(view_.color),
+          view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
 }
 
 FrameView Viewer::asShown(const FrameView& frame) const {
@@ -145,13 +150,32 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
     above.height -= ui_.legendHeight();
     ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
   }
+  if (options_.inspect != nullptr)
+    ui_.inspector(*options_.inspect, frame.info, scene_.origin,
+                  makeProjection(view_.camera, target_->width(), target_->height(), area), area);
   if (view_.panels) {
-    PanelModel model{frame.info,     run,      options_.timings, scene_,          bounds_, settings_, view_,
-                     !nodes.empty(), commands, options_.editor,  options_.whatIf, history_};
-    ui_.panels(model, area.height);
+    PanelModel model{
+        frame.info,     run,      options_.timings, scene_,          bounds_,          settings_, view_,
+        !nodes.empty(), commands, options_.editor,  options_.whatIf, options_.gallery, history_};
+    ui_.panels(model, target_->height());
+    if (!run.line.branches.empty()) ui_.timeLine(model, area);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
+  if (options_.gallery != nullptr && options_.gallery->open) drawGallery(area);
   return commands;
+}
+
+/// The pictures of entries become textures when they are first to be seen.
+void Viewer::drawGallery(const Rect& area) {
+  for (GalleryEntry& entry : options_.gallery->entries) {
+    if (entry.texture != 0 || entry.picture.empty()) continue;
+    const std::optional<Image> picture = readPng(entry.picture);
+    entry.picture.clear();
+    if (!picture) continue;
+    galleryPictures_.push_back(makePictureTexture(*picture));
+    entry.texture = galleryPictures_.back().name();
+  }
+  ui_.gallery(*options_.gallery, area);
 }
 
 Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
@@ -166,6 +190,8 @@ Caption Viewer::caption(const FrameView& frame, const RunStatus& run) const {
   if (view_.color == ColorField::pressure && frame.pressure.empty() && !frame.positions.empty())
     caption.rows.emplace_back("pressure", "from the next step on");
   if (run.stopped) caption.rows.emplace_back("state", "stopped");
+  if (options_.gallery != nullptr && !options_.gallery->opening.empty())
+    caption.rows.emplace_back("opening", options_.gallery->opening);
   const std::size_t equals = options_.note.find(" = ");
   if (equals != std::string::npos) {
     caption.rows.emplace_back(options_.note.substr(0, equals), options_.note.substr(equals + 3));
@@ -190,7 +216,8 @@ void Viewer::moveCamera(const InputState& input, const Rect& area) {
 
   sinceClick_ += input.seconds;
   if (pressed && free) {
-    if (sinceClick_ < kDoubleClickSeconds) {
+    doubleClicked_ = sinceClick_ < kDoubleClickSeconds;
+    if (doubleClicked_) {
       const auto point = pointAt(static_cast<int>(input.mouseX), static_cast<int>(input.mouseY), area);
       if (point) lookAt(view_.camera, *point);
     }
@@ -214,6 +241,11 @@ void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& com
   if (input.control || input.alt) return;
   if (pressed(Key::space)) (run.playing ? commands.pause : commands.play) = true;
   if (pressed(Key::right)) commands.step = true;
+  if (pressed(Key::left)) commands.stepBack = true;
+  if (const TimeLineView::Branch* branch = run.line.present()) {
+    if (pressed(Key::home)) commands.goTo = {branch->number, branch->from};
+    if (pressed(Key::end)) commands.goTo = {branch->number, branch->until};
+  }
   if (pressed(Key::r)) commands.reset = true;
   if (pressed(Key::p)) commands.savePicture = true;
   if (pressed(Key::h)) view_.panels = !view_.panels;

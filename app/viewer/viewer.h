@@ -1,6 +1,7 @@
 // The picture with its panels, and the window's loop.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -32,6 +33,10 @@ struct ViewerOptions {
   SceneEditor* editor = nullptr;
   /// Settings to be tried on a copy; null: not offered. Outlives the viewer.
   WhatIfModel* whatIf = nullptr;
+  /// The particle that is looked into; null: particles cannot be picked. Outlives the viewer.
+  InspectModel* inspect = nullptr;
+  /// What can be opened; null: not offered. Outlives the viewer.
+  GalleryModel* gallery = nullptr;
   bool water = false;  ///< ViewState::water to begin with
 };
 
@@ -59,6 +64,8 @@ class Viewer {
   /// Shows these from now on: those that the panels asked for were refused.
   void setSettings(const Settings& settings) { settings_ = settings; }
   ViewState& view() { return view_; }
+  /// The particle that is looked into; null where none can be.
+  const InspectModel* inspected() const { return options_.inspect; }
   ColorFieldInfo colorInfo(ColorField field) const {
     return colorFieldInfo(field, referenceSpeed_, scene_.solver.restDensity);
   }
@@ -67,8 +74,13 @@ class Viewer {
 
  private:
   UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
+  void drawGallery(const Rect& area);
   /// With the water's surface only where it is to be seen.
   FrameView asShown(const FrameView& frame) const;
+  Shot shot(const Rect& area) const;
+  void inspect(const FrameView& frame, const InputState& input, const Rect& area);
+  bool hidden(const FrameView& frame, std::size_t particle, const InputState& input, const Rect& area) const;
+  void lookInto(const FrameView& frame);
   void moveCamera(const InputState& input, const Rect& area);
   void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
@@ -84,12 +96,23 @@ class Viewer {
   Renderer renderer_;
   Ui ui_;
   StageHistory history_;
+  std::vector<GlTexture> galleryPictures_;
   std::optional<RenderTarget> target_;
   InputState last_;
   bool laidOut_ = false;
-  bool draggingScene_ = false;
-  double sinceClick_ = 0;
+  bool draggingScene_ = false, mouseUsed_ = false;
+  std::optional<std::array<float, 2>> pressedAt_;  ///< where the left button went down on the scene
+  double sinceClick_ = 1;                          ///< (s)
+  bool doubleClicked_ = false;                     ///< by the last press
 };
+
+/// Whether a place of the picture (pixels, from the top left) is in `area` and the mouse in the picture.
+bool contains(const Rect& area, const InputState& input);
+
+/// The particle that a picture of this size shows at a place of it (pixels, from the top left): the first
+/// sphere that the ray of sight meets, of those that the shot does not cut away. Its index in the frame.
+std::optional<std::size_t> pickParticle(const FrameView& frame, const Shot& shot, int width, int height,
+                                        double x, double y);
 
 // What a window shows while its scene is being prepared.
 
@@ -129,6 +152,11 @@ struct WindowOptions {
   std::function<void(const Image&)> savePicture;
   /// Told of each frame that has been drawn, on the window's thread.
   std::function<void(const DrawnFrame&)> drawn{};
+  bool water = false;  ///< shows the water's surface to begin with
+  /// What can be opened from the window, and reads it; called on another thread, throws what is wrong with
+  /// it.
+  std::function<std::vector<GalleryEntry>()> gallery{};
+  std::function<Scene(const std::filesystem::path&)> open{};
 };
 
 /// Opens a window on the scene and returns when it is closed. `read` is called on another thread, meanwhile

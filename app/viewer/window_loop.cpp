@@ -6,8 +6,10 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/platform/context.h"
+#include "app/session/probe.h"
 #include "app/session/session.h"
 #include "app/viewer/viewer.h"
 #include "core/base/messages.h"
@@ -35,6 +37,8 @@ void applyRequest(const UiCommands& commands, const Settings& settings, Simulati
   if (commands.play) simulation.play();
   if (commands.pause) simulation.pause();
   if (commands.step) simulation.step();
+  if (commands.stepBack) simulation.stepBack();
+  if (commands.goTo) simulation.goTo(commands.goTo->branch, commands.goTo->time);
 }
 
 /// Begins when the picture before it is kept, so that no two take the same name. An empty future: none was.
@@ -51,9 +55,91 @@ void printWarnings(const Scene& scene) {
     std::cerr << scene.file.string() << ": warning: " << warning << '\n';
 }
 
-/// The loop, until the window is closed.
-void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThread> simulation,
-          const WindowOptions& options) {
+struct Prepared {
+  Scene scene;
+  std::unique_ptr<SimulationThread> simulation;
+};
+
+/// A scene that is being prepared on a thread of its own.
+class Preparation {
+ public:
+  Preparation(std::string name, std::function<Scene()> read, int threads)
+      : name_(std::move(name)), status_(std::make_shared<PreparationStatus>()) {
+    prepared_ = std::async(std::launch::async, [status = status_, read = std::move(read), threads] {
+      const ProgressScope watched(*status);
+      Scene scene = read();
+      auto simulation = std::make_unique<SimulationThread>(scene, threads, Pace::realTime);
+      return Prepared{std::move(scene), std::move(simulation)};
+    });
+  }
+
+  const std::string& name() const { return name_; }
+  std::string doing() const { return status_->text(); }
+  bool ready(std::chrono::milliseconds patience = {}) const {
+    return prepared_.wait_for(patience) == std::future_status::ready;
+  }
+  /// Throws what reading threw.
+  Prepared take() { return prepared_.get(); }
+
+ private:
+  std::string name_;
+  std::shared_ptr<PreparationStatus> status_;
+  std::future<Prepared> prepared_;
+};
+
+/// Opens what the gallery asks for while the scene before it goes on. What is cancelled, or overtaken by
+/// another, ends in the background.
+class Opening {
+ public:
+  /// `left`: those that nobody waits for any more.
+  Opening(const WindowOptions& options, GalleryModel& gallery, std::vector<Preparation>& left)
+      : options_(options), gallery_(gallery), left_(left) {}
+
+  /// Begins what is asked for; returns the scene that is ready, or nothing.
+  std::optional<Prepared> poll() {
+    if (gallery_.cancel || gallery_.ask) leave();
+    gallery_.cancel = false;
+    if (const auto asked = std::exchange(gallery_.ask, std::nullopt)) {
+      gallery_.faults.clear();
+      now_.emplace(
+          asked->filename().string(), [open = options_.open, file = *asked] { return open(file); },
+          options_.threads);
+    }
+    std::erase_if(left_, [](const Preparation& one) { return one.ready(); });
+    gallery_.opening = now_ ? now_->name() + (now_->doing().empty() ? " ..." : ": " + now_->doing()) : "";
+    if (!now_ || !now_->ready()) return std::nullopt;
+    try {
+      std::optional<Prepared> prepared = now_->take();
+      now_.reset();
+      return prepared;
+    } catch (const std::exception& error) {
+      const auto* const input = dynamic_cast<const InputError*>(&error);
+      if (input == nullptr) gallery_.faults.emplace_back(error.what());
+      if (input != nullptr)
+        for (const Fault& fault : input->faults()) gallery_.faults.push_back(fault.text());
+    }
+    gallery_.open = true;
+    now_.reset();
+    gallery_.opening.clear();
+    return std::nullopt;
+  }
+
+ private:
+  void leave() {
+    if (now_) left_.push_back(std::move(*now_));
+    now_.reset();
+  }
+
+  const WindowOptions& options_;
+  GalleryModel& gallery_;
+  std::vector<Preparation>& left_;
+  std::optional<Preparation> now_;
+};
+
+/// The loop, until the window is closed or, which is returned, another scene was opened.
+std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
+                             std::unique_ptr<SimulationThread> simulation, const WindowOptions& options,
+                             std::vector<Preparation>& left) {
   using Clock = std::chrono::steady_clock;
   const std::string title = (scene.name.empty() ? scene.stem() : scene.name) + " - Migiwa";
   std::string preparing;
@@ -63,8 +149,18 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
   SceneEditor editor = makeEditor(session);
   WhatIfModel whatIf;
   WhatIfSession trials(options.threads);
+  InspectModel inspect;
+  ProbeSession probes;
+  GalleryModel gallery;
+  if (options.gallery) gallery.entries = options.gallery();
+  Opening opening(options, gallery, left);
   Viewer viewer(simulation->scene(), simulation->walls(),
-                {.scale = window.contentScale(), .editor = &editor, .whatIf = &whatIf});
+                {.scale = window.contentScale(),
+                 .editor = &editor,
+                 .whatIf = &whatIf,
+                 .inspect = &inspect,
+                 .gallery = options.open ? &gallery : nullptr,
+                 .water = options.water});
   if (options.playing) simulation->play();
 
   FrameSnapshot frame;
@@ -81,6 +177,7 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
         if (change->scene) trials.forget(whatIf, *simulation);
+        if (change->simulation) probes.forget(inspect);
         if (change->scene) applyChange(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
@@ -90,8 +187,12 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
       preparing = std::move(now);
       window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
     }
+    if (!input.dropped.empty() && options.open) gallery.ask = input.dropped.front();
+    if (!gallery.opening.empty()) redraws = kFramesAfterInput;
+    if (std::optional<Prepared> next = opening.poll()) return next;
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
-    if (const std::optional<Settings> inForce = simulation->takeRefusal()) {
+    if (probes.poll(inspect, simulation->scene(), viewer.settings())) redraws = kFramesAfterInput;
+    if (const std::optional<Settings> inForce = simulation->takeSettings()) {
       viewer.setSettings(*inForce);
       redraws = kFramesAfterInput;
     }
@@ -117,55 +218,52 @@ void show(GlfwWindow& window, const Scene& scene, std::unique_ptr<SimulationThre
     ++drawn;
   }
   if (saving.valid()) saving.get();
+  return std::nullopt;
 }
 
-struct Prepared {
-  Scene scene;
-  std::unique_ptr<SimulationThread> simulation;
-};
-
 /// Shows what is done until it is done; null: the window was closed before.
-std::optional<Prepared> awaited(std::future<Prepared>& preparing, const PreparationStatus& status,
-                                GlfwWindow& window, const std::string& name) {
-  const std::string title = name + " - Migiwa";
+std::optional<Prepared> awaited(Preparation& preparing, GlfwWindow& window) {
+  const std::string title = preparing.name() + " - Migiwa";
   std::optional<PreparationView> view;
-  while (preparing.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+  while (!preparing.ready()) {
     if (window.shouldClose()) return std::nullopt;
-    const std::string doing = status.text();
+    const std::string doing = preparing.doing();
     window.setTitle(std::string(doing.empty() ? "preparing" : doing).append(" - ").append(title));
     if (const auto [width, height] = window.framebufferSize(); width > 0 && height > 0) {
-      if (!view) view.emplace(name, window.contentScale());
+      if (!view) view.emplace(preparing.name(), window.contentScale());
       view->draw(doing, width, height);
       view->copyToWindow();
       window.swap();
     }
     window.waitForInput(kBetweenSigns);
   }
-  return preparing.get();
+  return preparing.take();
 }
 
 }  // namespace
 
 void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options) {
-  PreparationStatus status;
-  std::future<Prepared> preparing = std::async(std::launch::async, [&] {
-    const ProgressScope watched(status);
-    Scene scene = read();
-    auto simulation = std::make_unique<SimulationThread>(scene, options.threads, Pace::realTime);
-    return Prepared{std::move(scene), std::move(simulation)};
-  });
+  Preparation preparing(name, read, options.threads);
   std::optional<Prepared> prepared;
-  if (preparing.wait_for(kPatience) == std::future_status::ready) prepared = preparing.get();
+  if (preparing.ready(kPatience)) prepared = preparing.take();
   std::optional<GlfwWindow> window;
   try {
     window.emplace(name + " - Migiwa", kWidth, kHeight);
   } catch (const MissingError&) {
     // What is wrong with the scene is told first.
-    if (!prepared) preparing.get();
+    if (!prepared) preparing.take();
     throw;
   }
-  if (!prepared) prepared = awaited(preparing, status, *window, name);
-  if (prepared) show(*window, prepared->scene, std::move(prepared->simulation), options);
+  if (!prepared) prepared = awaited(preparing, *window);
+  WindowOptions now = options;
+  std::vector<Preparation> left;
+  while (prepared) {
+    prepared = show(*window, prepared->scene, std::move(prepared->simulation), now, left);
+    // What was opened since plays as particles, with the settings of its file.
+    now.overrides.clear();
+    now.playing = true;
+    now.water = false;
+  }
 }
 
 namespace {

@@ -71,6 +71,10 @@ std::string sceneTextWith(std::string_view text, const std::filesystem::path& fi
 /// content.
 std::string startOf(Scene scene);
 
+/// Where the settings of two scenes differ, as options of --set that lead from one to the other:
+/// "/solver/tolerance=0.01". Names, duration and view do not count; "none" stands for a key that goes.
+std::vector<std::string> changesBetween(const Scene& from, const Scene& to);
+
 // The scene format for editors and for people, made from the list of fields that the reader uses.
 
 /// JSON Schema (draft 2020-12) of a scene file, `scenes/scene.schema.json`.

@@ -196,6 +196,21 @@ std::string startOf(Scene scene) {
   return compactJson(sceneIdentity(scene));
 }
 
+std::vector<std::string> changesBetween(const Scene& from, const Scene& to) {
+  const Json before = sceneIdentity(from), after = sceneIdentity(to);
+  std::vector<std::string> changes;
+  for (const Json::json_pointer& place : differences(
+           before, after, [&](const Json::json_pointer& above) { return before.at(above).is_array(); })) {
+    const bool there = after.contains(place);
+    const bool word = there && after.at(place).is_string();
+    changes.push_back(place.to_string() + "=" +
+                      (!there ? "none"
+                       : word ? after.at(place).get<std::string>()
+                              : compactJson(after.at(place))));
+  }
+  return changes;
+}
+
 Json sceneIdentity(const Scene& scene) {
   Json identity = written(scene, fileIdentity);
   for (const char* key : {"name", "description", "duration", "view"}) identity.erase(key);

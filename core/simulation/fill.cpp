@@ -316,6 +316,7 @@ void FrameSnapshot::assign(const FrameView& view) {
   lambda.assign(view.lambda.begin(), view.lambda.end());
   pressure.assign(view.pressure.begin(), view.pressure.end());
   neighbours.assign(view.neighbours.begin(), view.neighbours.end());
+  ids.assign(view.ids.begin(), view.ids.end());
   walls = view.walls;
   water = view.water;
 }

@@ -48,7 +48,7 @@ struct FrameView {
   std::span<const float> lambda;  ///< of the last iteration, times the squared support radius (1)
   std::span<const std::uint32_t> neighbours;
   std::span<const float> pressure{};     ///< of the last step (Pa); empty unless Simulation::watchPressure()
-  std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame; empty in a snapshot
+  std::span<const std::uint32_t> ids{};  ///< tell particles apart from frame to frame
   /// For pictures of walls that move: all walls as they are now. Null where all stand still, and
   /// where no picture is asked for.
   std::shared_ptr<const WallDrawing> walls{};
@@ -61,13 +61,13 @@ struct FrameSnapshot {
   FrameInfo info;
   std::vector<Float4> positions, velocities;
   std::vector<float> density, gamma, lambda, pressure;
-  std::vector<std::uint32_t> neighbours;
+  std::vector<std::uint32_t> neighbours, ids;
   std::shared_ptr<const WallDrawing> walls;
   std::shared_ptr<const SurfaceMesh> water;
 
   void assign(const FrameView& view);
   FrameView view() const {
-    return {info, positions, velocities, density, gamma, lambda, neighbours, pressure, {}, walls, water};
+    return {info, positions, velocities, density, gamma, lambda, neighbours, pressure, ids, walls, water};
   }
 };
 

@@ -61,6 +61,12 @@ StateImage StateImage::of(Simulation& simulation) {
   return image;
 }
 
+std::size_t StateImage::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [name, array] : arrays_) sum += array.size();
+  return sum;
+}
+
 void StateImage::restore(Simulation& simulation) const {
   Reader reader(*this);
   simulation.visitState(reader);

@@ -27,6 +27,8 @@ class StateImage {
   static StateImage of(Simulation& simulation);
 
   bool empty() const { return arrays_.empty(); }
+  /// Memory of its arrays; the rest is little beside it.
+  std::size_t bytes() const;
   /// Puts a simulation of the same scene into this state; its settings stay. Throws StateError where the
   /// scene is another one; the simulation is then of no further use.
   void restore(Simulation& simulation) const;

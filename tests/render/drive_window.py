@@ -33,7 +33,7 @@ SCREEN = (1400, 900)
 JUDGED_FROM = 300  # seconds of driving
 MOST_GROWTH = 1.1
 # Where the buttons are in a window of 1280 x 720.
-EDIT_SCENE, SAVE_AS, NAME_FIELD, IN_THE_SCENE = (80, 40), (905, 687), (1100, 687), (500, 600)
+EDIT_SCENE, SAVE_AS, NAME_FIELD, IN_THE_SCENE = (60, 40), (905, 637), (1100, 637), (500, 600)
 # Typed text names no folder: there is no slash.
 LETTERS = "abcdefghijklmnopqrstuvwxyz0123456789.,-[]= "
 NAMES = {".": "period", ",": "comma", "-": "minus", "[": "bracketleft", "]": "bracketright", "=": "equal", " ": "space"}

@@ -4,8 +4,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include <stb_image.h>
-
 namespace migiwa {
 namespace {
 
@@ -34,16 +32,6 @@ Image differencePicture(const Image& expected, const Image& found) {
     picture.rgba[i + 1] = picture.rgba[i + 2] = off ? 20 : grey;
   }
   return picture;
-}
-
-std::optional<Image> readPng(const std::filesystem::path& file) {
-  int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load(file.c_str(), &width, &height, &channels, 4), stbi_image_free);
-  if (!pixels) return std::nullopt;
-  Image image(width, height);
-  std::copy(pixels.get(), pixels.get() + image.rgba.size(), image.rgba.begin());
-  return image;
 }
 
 }  // namespace migiwa

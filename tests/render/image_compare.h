@@ -17,7 +17,5 @@ inline constexpr double kAllowedShare = 0.01;
 double differentShare(const Image& a, const Image& b);
 /// Grey where they agree, red where they differ.
 Image differencePicture(const Image& expected, const Image& found);
-/// Nothing when there is no such PNG.
-std::optional<Image> readPng(const std::filesystem::path& file);
 
 }  // namespace migiwa

@@ -369,18 +369,18 @@ class RefusedSettingsTest : public ::testing::Test {
 TEST_F(RefusedSettingsTest, ThoseOfBeforeStayAndTheRunGoesOn) {
   simulation_.step();
   ASSERT_TRUE(at(0.005));
-  EXPECT_FALSE(simulation_.takeRefusal());
+  EXPECT_FALSE(simulation_.takeSettings());
   simulation_.apply(bakedOf(good()));
   ASSERT_TRUE(refused());
   const RunStatus status = simulation_.status();
   EXPECT_NE(status.settingsFaults[0].find(":/boundary/gamma/method: expected "), std::string::npos)
       << status.settingsFaults[0];
   EXPECT_FALSE(status.stopped);
-  const std::optional<Settings> inForce = simulation_.takeRefusal();
+  const std::optional<Settings> inForce = simulation_.takeSettings();
   ASSERT_TRUE(inForce);
   EXPECT_EQ(inForce->boundary.gammaMethod, scene_.boundary.gammaMethod);
   EXPECT_EQ(inForce->solver.maxIterations, scene_.solver.maxIterations);
-  EXPECT_FALSE(simulation_.takeRefusal()) << "told once";
+  EXPECT_FALSE(simulation_.takeSettings()) << "told once";
   simulation_.step();
   ASSERT_TRUE(at(0.01));
   EXPECT_EQ(frame_.info.stateHash, hashAfter(2));

@@ -5,6 +5,10 @@ As a program it does what it reads, line by line, until there is no more:
     key NAME        presses and releases a key
     click X Y       moves there (pixels of the window, from the top left) and clicks
     move X Y        moves there
+    drag X Y U V    presses at X, Y, moves to U, V in steps, and lets go
+    wheel N         turns the wheel N notches, away where N is positive
+    drop FILE       drops the file on the window, as a file manager would
+    wait S          waits so many seconds
     close           asks the window to close, as its frame's button would
 """
 
@@ -58,6 +62,39 @@ class Hands:
         for code in reversed(codes):
             self.fake(X.KeyRelease, code)
 
+    def drop(self, file):
+        """By the protocol XDND; returns when the window has taken the name, or after ten seconds."""
+        atom, screen = self.display.intern_atom, self.display.screen()
+        source = screen.root.create_window(0, 0, 1, 1, 0, screen.root_depth)
+        source.set_selection_owner(atom("XdndSelection"), X.CurrentTime)
+        for name, data in (
+            ("XdndEnter", [source.id, 5 << 24, atom("text/uri-list"), 0, 0]),
+            ("XdndPosition", [source.id, 0, (600 << 16) | 300, X.CurrentTime, atom("XdndActionCopy")]),
+            ("XdndDrop", [source.id, 0, X.CurrentTime, 0, 0]),
+        ):
+            self.window.send_event(event.ClientMessage(window=self.window, client_type=atom(name), data=(32, data)))
+        self.display.sync()
+        end = time.monotonic() + 10
+        while time.monotonic() < end:
+            if not self.display.pending_events():
+                time.sleep(0.02)
+                continue
+            asked = self.display.next_event()
+            if asked.type == X.SelectionRequest:
+                asked.requestor.change_property(asked.property, asked.target, 8, f"file://{file}\r\n".encode())
+                asked.requestor.send_event(
+                    event.SelectionNotify(
+                        time=asked.time,
+                        requestor=asked.requestor,
+                        selection=asked.selection,
+                        target=asked.target,
+                        property=asked.property,
+                    )
+                )
+                self.display.sync()
+            elif asked.type == X.ClientMessage and asked.client_type == atom("XdndFinished"):
+                break
+
     def close(self):
         atom = self.display.intern_atom
         message = (32, [atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0])
@@ -78,10 +115,26 @@ def main():
             time.sleep(0.1)
             if word == "click":
                 hands.click()
+        elif word == "drag":
+            (x, y), (u, v) = (tuple(int(n) for n in rest[k : k + 2]) for k in (0, 2))
+            hands.move((place.x + x, place.y + y))
+            time.sleep(0.1)
+            hands.fake(X.ButtonPress, LEFT)
+            for k in range(1, 9):
+                time.sleep(0.05)
+                hands.move((place.x + x + (u - x) * k // 8, place.y + y + (v - y) * k // 8))
+            time.sleep(0.1)
+            hands.fake(X.ButtonRelease, LEFT)
+        elif word == "wheel":
+            hands.click(UP if int(rest[0]) > 0 else DOWN, abs(int(rest[0])))
+        elif word == "drop":
+            hands.drop(rest[0])
+        elif word == "wait":
+            time.sleep(float(rest[0]))
         elif word == "close":
             hands.close()
         else:
-            sys.exit(f"expected key, click, move or close, found {line!r}")
+            sys.exit(f"expected key, click, move, drag, wheel, drop, wait or close, found {line!r}")
 
 
 if __name__ == "__main__":

@@ -184,7 +184,7 @@ TEST(WindowTest, LoopDrawsSoManyFramesAndCloses) {
     EXPECT_EQ(frame.particles, 150U);
     EXPECT_FALSE(frame.run.playing);
   }
-  EXPECT_EQ(middleOf(seen.back().picture).rgba, middleWithoutWindow(start, {}, true).rgba);
+  EXPECT_EQ(middleOf(seen.back().picture).rgba, middleWithoutWindow(start, seen.back().run, true).rgba);
 }
 
 TEST(WindowTest, PlaysAtOnceUnlessItIsAskedNotTo) {
@@ -264,9 +264,9 @@ TEST(WindowTest, KeysAndButtonsChangeWhatIsShownAndComputed) {
                                              options);
   ASSERT_EQ(seen.size(), std::size_t{kClicked} + 1);
   Simulation same(smallScene(), 1);
-  EXPECT_EQ(middleOf(picture.get()).rgba, middleWithoutWindow(same, {}, true).rgba);
+  EXPECT_EQ(middleOf(picture.get()).rgba, middleWithoutWindow(same, seen[kPicture].run, true).rgba);
   const Image hidden = middleOf(seen[kHidden].picture);
-  EXPECT_EQ(hidden.rgba, middleWithoutWindow(same, {}, false).rgba);
+  EXPECT_EQ(hidden.rgba, middleWithoutWindow(same, seen[kHidden].run, false).rgba);
   EXPECT_NE(hidden.rgba, middleOf(seen[kPicture].picture).rgba) << "the scene has all of the window";
 
   Settings settings = same.settings();
@@ -277,6 +277,101 @@ TEST(WindowTest, KeysAndButtonsChangeWhatIsShownAndComputed) {
     EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.stateHash, same.stateHash());
     EXPECT_EQ(seen[static_cast<std::size_t>(k)].info.handling, "no correction");
   }
+}
+
+/// The bar of the first of `branches` branches in a window of 1280 x 720, at a share of its length.
+std::string onBar(double share, int branches) {
+  const int height = static_cast<int>(std::lround((1.35 * branches + 2) * 15));
+  return std::to_string(std::lround(468 + share * (1268 - 468))) + " " + std::to_string(720 - height + 14);
+}
+
+TEST(WindowTest, TimeLineGoesBackByKeysByClicksAndByDragging) {
+  const auto at = [](double time) {
+    return [time](const DrawnFrame& drawn) {
+      return std::abs(drawn.frame.info.time - time) < 1e-9 && !drawn.run.line.underWay;
+    };
+  };
+  const auto branch = [](int number) {
+    return [number](const DrawnFrame& drawn) { return drawn.run.line.branch == number; };
+  };
+  enum { kEnd, kBack, kHome, kEndAgain, kClicked, kDragged, kBranch, kOn, kFirst };
+  WindowOptions options;
+  options.playing = false;
+  std::vector<Act> acts;
+  for (int k = 1; k <= 20; ++k) acts.push_back({"key Right", at(0.005 * k)});
+  const std::size_t steps = acts.size();
+  for (const Act& act : std::vector<Act>{{"key Left", at(0.095)},
+                                         {"key Home", at(0)},
+                                         {"key End", at(0.1)},
+                                         {"click " + onBar(0.5, 1), at(0.05)},
+                                         {"drag " + onBar(0.5, 1) + " " + onBar(0.2, 1), at(0.02)},
+                                         {"key c", branch(2)},
+                                         {"key Right", at(0.025)},
+                                         {"click " + onBar(0.7, 2), at(0.07)}})
+    acts.push_back(act);
+  const std::vector<Seen> seen = windowAfter(acts, options);
+  ASSERT_EQ(seen.size(), steps + kFirst);
+  const auto shown = [&](int k) -> const Seen& { return seen[steps - 1 + static_cast<std::size_t>(k)]; };
+  Simulation same(smallScene(), 1);
+  std::vector<std::uint64_t> hashes{same.stateHash()};
+  for (int k = 0; k < 20; ++k) {
+    same.advanceFrame();
+    hashes.push_back(same.stateHash());
+  }
+  EXPECT_EQ(shown(kEnd).info.stateHash, hashes[20]);
+  EXPECT_EQ(shown(kBack).info.stateHash, hashes[19]);
+  EXPECT_EQ(shown(kHome).info.stateHash, hashes[0]);
+  EXPECT_EQ(shown(kEndAgain).info.stateHash, hashes[20]);
+  EXPECT_EQ(shown(kClicked).info.stateHash, hashes[10]);
+  EXPECT_EQ(shown(kDragged).info.stateHash, hashes[4]);
+  EXPECT_EQ(shown(kBranch).run.line.branches.at(1).name, "/boundary/handling=none");
+  EXPECT_EQ(shown(kOn).info.handling, "no correction");
+  EXPECT_EQ(shown(kFirst).info.stateHash, hashes[14]);
+  EXPECT_EQ(shown(kFirst).run.line.branch, 1);
+  EXPECT_EQ(shown(kFirst).handling, BoundaryHandling::gamma) << "the panel shows what is in force";
+}
+
+TEST(WindowTest, OpensWhatIsClickedInTheGalleryAndWhatIsDropped) {
+  WindowOptions options;
+  options.playing = false;
+  options.gallery = [] { return std::vector<GalleryEntry>{{"wide.json", {}, "Wide", "A wider tank."}}; };
+  std::vector<std::string> asked;
+  options.open = [&](const std::filesystem::path& file) -> Scene {
+    asked.push_back(file.string());
+    if (file == "wide.json")
+      return parseScene(R"({"format": 1, "particle_spacing": 0.1,
+        "fluid": [{"shape": "box", "min": [0, 0, 0], "max": [1, 0.2, 0.5]}]})",
+                        file);
+    if (file == "/tmp/dropped.obj") return smallScene();
+    throw InputError(file.string(), "expected a scene, found none");
+  };
+  const auto particles = [](std::size_t count) {
+    return [count](const DrawnFrame& drawn) { return drawn.frame.positions.size() == count; };
+  };
+  // The button "Scenes", and the first card.
+  const std::vector<Seen> seen = windowAfter({{"click 158 40", afterFrames(5)},
+                                              {"click 450 180", particles(100)},
+                                              {"drop /tmp/faulty.obj", afterFrames(20)},
+                                              {"drop /tmp/dropped.obj", particles(150)}},
+                                             options);
+  ASSERT_EQ(seen.size(), 4U);
+  EXPECT_EQ(asked, (std::vector<std::string>{"wide.json", "/tmp/faulty.obj", "/tmp/dropped.obj"}));
+  EXPECT_TRUE(seen[1].run.playing) << "what is opened plays";
+  EXPECT_EQ(seen[2].particles, 100U) << "what cannot be opened changes nothing";
+}
+
+TEST(WindowTest, AClickOnAParticleLooksIntoIt) {
+  WindowOptions options;
+  options.playing = false;
+  const auto looksInto = [](bool wanted) {
+    return [wanted](const DrawnFrame& drawn) {
+      const InspectModel* const model = drawn.viewer.inspected();
+      return model->id.has_value() == wanted && (!wanted || (model->picked && model->walls));
+    };
+  };
+  const std::vector<Seen> seen =
+      windowAfter({{"click 700 420", looksInto(true)}, {"key Escape", looksInto(false)}}, options);
+  ASSERT_EQ(seen.size(), 2U);
 }
 
 /// Titles of the windows that there are.

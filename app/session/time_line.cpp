@@ -1,0 +1,161 @@
+#include "app/session/time_line.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/base/messages.h"
+#include "core/scene/scene_file.h"
+
+namespace migiwa {
+namespace {
+
+Scene withSettings(const Scene& scene, const Settings& settings) {
+  Scene result = scene;
+  result.solver = settings.solver;
+  result.boundary = settings.boundary;
+  result.effects = settings.effects;
+  return result;
+}
+
+/// What the settings were changed to, such as "/solver/tolerance=0.01".
+std::string nameOf(const Simulation& simulation, const Settings& before) {
+  const std::vector<std::string> changes =
+      changesBetween(withSettings(simulation.scene(), before), simulation.scene());
+  if (changes.empty()) return "the same settings";
+  if (changes.size() == 1) return changes.front();
+  return changes.front() + " and " + std::to_string(changes.size() - 1) + " more";
+}
+
+}  // namespace
+
+void TimeLine::begin(Simulation& simulation) {
+  branches_.clear();
+  bytes_ = 0;
+  newest_ = branch_ = 1;
+  const long frame = simulation.frame();
+  branches_[1] = {"run", 0, frame, frame, simulation.time(), simulation.settings(), {}, {}};
+  keep(simulation);
+}
+
+void TimeLine::reached(Simulation& simulation) {
+  Branch& branch = branches_.at(branch_);
+  const long frame = simulation.frame();
+  if (frame <= branch.last || simulation.stopped()) return;
+  branch.last = frame;
+  branch.end = simulation.time();
+  const auto& [kept, moment] = *branch.moments.rbegin();
+  // Times are sums of time steps, and not exact.
+  if (frame - kept < kMostFrames && branch.end - moment.time < kInterval * (1 - 1e-6)) return;
+  keep(simulation);
+  fitLimit();
+}
+
+void TimeLine::changed(Simulation& simulation, const Settings& before) {
+  const long frame = simulation.frame();
+  Branch& branch = branches_.at(branch_);
+  if (frame < branch.last) {
+    const int parent = std::exchange(branch_, ++newest_);
+    branches_[branch_] = {nameOf(simulation, before), parent, frame, frame,
+                          simulation.time(),          before, {},    {}};
+    keep(simulation);
+    while (branches_.size() > kMostBranches && dropBranch()) {
+    }
+    fitLimit();
+  } else if (frame == branch.first && branch.parent != 0) {
+    branch.name = nameOf(simulation, branch.settings);
+  }
+  branches_.at(branch_).changes[frame] = simulation.settings();
+}
+
+const Settings* TimeLine::changeAt(long frame) const {
+  const auto& changes = branches_.at(branch_).changes;
+  const auto found = changes.find(frame);
+  return found == changes.end() ? nullptr : &found->second;
+}
+
+std::optional<int> TimeLine::parent(int branch) const {
+  const int parent = branches_.at(branch).parent;
+  return branches_.contains(parent) ? std::optional(parent) : std::nullopt;
+}
+
+TimeLine::Origin TimeLine::origin(int branch, std::optional<long> frame, double time) const {
+  const Branch& from = branches_.at(branch);
+  auto moment = from.moments.begin();
+  for (auto next = std::next(moment); next != from.moments.end(); ++next) {
+    if (frame ? next->first > *frame : next->second.time > time) break;
+    moment = next;
+  }
+  const Settings* settings = &from.settings;
+  for (const auto& [at, changed] : from.changes)
+    if (at < moment->first) settings = &changed;
+  return {moment->second.image, *settings, moment->first};
+}
+
+TimeLineView TimeLine::view(const Simulation& simulation) const {
+  TimeLineView view;
+  view.branch = branch_;
+  view.frame = simulation.frame();
+  view.time = simulation.time();
+  view.bytes = bytes_;
+  for (const auto& [number, branch] : branches_) {
+    TimeLineView::Branch& shown = view.branches.emplace_back();
+    shown.number = number;
+    shown.name = branch.name;
+    shown.from = branch.moments.begin()->second.time;
+    shown.until = branch.end;
+    for (const auto& [frame, moment] : branch.moments) shown.kept.push_back(moment.time);
+  }
+  return view;
+}
+
+void TimeLine::keep(Simulation& simulation) {
+  auto image = std::make_shared<const StateImage>(StateImage::of(simulation));
+  const std::size_t bytes = image->bytes();
+  bytes_ += bytes;
+  branches_.at(branch_).moments[simulation.frame()] = {simulation.time(), std::move(image), bytes};
+}
+
+void TimeLine::fitLimit() {
+  while (bytes_ > limit_ && (thin() || dropBranch())) {
+  }
+}
+
+/// Takes out the state that leaves the smallest gap, of several the oldest. False where only first ones are
+/// left.
+bool TimeLine::thin() {
+  double smallest = std::numeric_limits<double>::infinity();
+  Branch* owner = nullptr;
+  std::map<long, Moment>::iterator least;
+  for (auto& [number, branch] : branches_) {
+    for (auto moment = std::next(branch.moments.begin()); moment != branch.moments.end(); ++moment) {
+      const auto next = std::next(moment);
+      const double until = next == branch.moments.end() ? branch.end + kInterval : next->second.time;
+      const double gap = until - std::prev(moment)->second.time;
+      if (gap >= smallest * (1 - 1e-6)) continue;
+      smallest = gap;
+      owner = &branch;
+      least = moment;
+    }
+  }
+  if (owner != nullptr) erase(*owner, least);
+  return owner != nullptr;
+}
+
+/// The oldest that is neither the first nor the present one.
+bool TimeLine::dropBranch() {
+  for (auto branch = std::next(branches_.begin()); branch != branches_.end(); ++branch) {
+    if (branch->first == branch_) continue;
+    while (!branch->second.moments.empty()) erase(branch->second, branch->second.moments.begin());
+    branches_.erase(branch);
+    return true;
+  }
+  return false;
+}
+
+void TimeLine::erase(Branch& branch, std::map<long, Moment>::iterator moment) {
+  bytes_ -= moment->second.bytes;
+  branch.moments.erase(moment);
+}
+
+}  // namespace migiwa

@@ -1,0 +1,87 @@
+// The past of a run in memory: states to go back to, and the branches that other settings have made of it.
+// Between two states a time is reached by stepping again, which gives the same bits. No window, no OpenGL.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/ui_state.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/state.h"
+
+namespace migiwa {
+
+class TimeLine {
+ public:
+  /// States are kept this far apart, or this many frames, whichever comes first.
+  static constexpr double kInterval = 0.1;  // (s)
+  static constexpr long kMostFrames = 8;
+  static constexpr std::size_t kLimit = std::size_t{512} << 20U;
+  /// Branches that there may be; beyond that the oldest go, but for the first and the one that runs.
+  static constexpr std::size_t kMostBranches = 12;
+
+  /// `limit`: bytes that states may take. The start of the first branch and that of the present one are kept
+  /// whatever they take.
+  explicit TimeLine(std::size_t limit = kLimit) : limit_(limit) {}
+
+  /// Forgets everything: the run begins with the state of now.
+  void begin(Simulation& simulation);
+  /// The simulation has reached another frame of the present branch.
+  void reached(Simulation& simulation);
+  /// The settings were `before`, and have been changed between two frames. At the end of a branch it goes on
+  /// with them; at an earlier frame another branch begins.
+  void changed(Simulation& simulation, const Settings& before);
+
+  /// Settings that the present branch has from this frame on; nothing: those of the frame before.
+  const Settings* changeAt(long frame) const;
+  bool hasBranch(int branch) const { return branches_.contains(branch); }
+  long firstFrame(int branch) const { return branches_.at(branch).first; }
+  long lastFrame(int branch) const { return branches_.at(branch).last; }
+  /// The branch from which this one went; nothing: the run began with it, or that one is no longer kept.
+  std::optional<int> parent(int branch) const;
+  int branch() const { return branch_; }
+
+  /// Where to step from: the last state at or before a place.
+  struct Origin {
+    std::shared_ptr<const StateImage> image;
+    Settings settings;  ///< in force before that frame's own change
+    long frame = 0;
+  };
+  Origin origin(int branch, std::optional<long> frame, double time) const;
+  /// The branch that the simulation is on from now on.
+  void goOn(int branch) { branch_ = branch; }
+
+  TimeLineView view(const Simulation& simulation) const;
+
+ private:
+  struct Moment {
+    double time;  ///< (s)
+    std::shared_ptr<const StateImage> image;
+    std::size_t bytes;
+  };
+  struct Branch {
+    std::string name;
+    int parent = 0;
+    long first = 0, last = 0;  ///< frames
+    double end = 0;            ///< time of the last one (s)
+    Settings settings;         ///< with which it came to its first frame
+    std::map<long, Settings> changes;
+    std::map<long, Moment> moments;  ///< the first frame's is always there
+  };
+
+  void keep(Simulation& simulation);
+  void fitLimit();
+  bool thin();
+  bool dropBranch();
+  void erase(Branch& branch, std::map<long, Moment>::iterator moment);
+
+  std::size_t limit_, bytes_ = 0;
+  int branch_ = 0, newest_ = 0;
+  std::map<int, Branch> branches_;  ///< by number, from 1 in the order in which they began
+};
+
+}  // namespace migiwa
