@@ -164,6 +164,14 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
                           [](auto& fields, auto& surface) { describeMotion(fields, surface.motion); });
 }
 
+/// A kernel that serves density and forces alike, and a tolerance that costs about an iteration a step, for
+/// what the constraint corrects does not become velocity.
+void setDefaultsOfProjection(SolverParameters& solver) {
+  solver.kernel = KernelType::wendlandC2;
+  solver.supportRatio = 2.25;
+  solver.tolerance = 0.003;
+}
+
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1),
@@ -178,6 +186,15 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at most."});
+  visitor.choice(
+      "velocity_step", solver.velocityStep, kVelocityStepNames,
+      {"",
+       "Where velocities come from: from the way that the constraint has moved particles (PBF), or from a "
+       "pressure that makes them free of divergence, while the constraint corrects positions alone: waves "
+       "keep their height, see docs/method.md. With it the defaults are kernel wendland_c2, support_ratio "
+       "2.25 and tolerance 0.003."});
+  if constexpr (Visitor::kChanges)
+    if (solver.velocityStep == VelocityStep::projection) setDefaultsOfProjection(solver);
   if (visitor.valid({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
     visitor.fault("min_iterations", "expected at most max_iterations, which is " +
                                         std::to_string(solver.maxIterations) + ", found " +
@@ -202,12 +219,6 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                  {"",
                   "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
                   "paper's plain iteration."});
-  visitor.choice(
-      "velocity_step", solver.velocityStep, kVelocityStepNames,
-      {"",
-       "Where velocities come from: from the way that the constraint has moved particles (PBF), or from a "
-       "pressure that makes them free of divergence, while the constraint corrects positions alone: waves "
-       "keep their height, see docs/method.md."});
   if (solver.velocityStep == VelocityStep::projection && visitor.valid({"kernel", "velocity_step"}) &&
       solver.kernel != KernelType::cubicSpline && solver.kernel != KernelType::wendlandC2)
     visitor.fault("velocity_step",

@@ -64,6 +64,8 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
   const bool added = state.addsWallDensity();
+  const float wallSlope = state.projects() ? state.lattice.wallSlope : 0;
+  const float wallBend = state.projects() ? state.lattice.wallBend : 0;
   const PairScale scale(state);
   const PairVector one = hn::Set(d, 1.0F), zero = hn::Zero(d);
   const auto ofNeighbours = [&state](const auto& centre, std::size_t i)
@@ -73,7 +75,11 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const auto solve = [&](std::size_t first, std::size_t count, const Float4* four,
                          const float* fifth) HWY_ATTR {
     const Components sums = loadSome(four, kPairs);
-    const PairVector gamma = loadSome(&state.gamma[first], count);
+    const PairVector continuum = loadSome(&state.gamma[first], count);
+    const PairVector beyond = hn::Sub(one, continuum);
+    const PairVector gamma = hn::MulAdd(hn::Mul(continuum, beyond),
+                                        hn::MulAdd(beyond, hn::Set(d, wallBend), hn::Set(d, wallSlope)),
+                                        continuum);  // gamma times besideWalls()
     const PairVector inverseGamma = added ? one : hn::Div(one, gamma);
     PairVector density = hn::Mul(
         hn::MulAdd(hn::Set(d, massRatio * Density::kValue), sums.w, hn::Set(d, massRatio * Kernel::value(0))),

@@ -45,7 +45,7 @@ struct SolverParameters {
   Acceleration acceleration = Acceleration::chebyshev;
   VelocityStep velocityStep = VelocityStep::positions;
   /// Mean divergence, times the time step, that ends a projection (unit: 1, range: [0, 1))
-  double divergenceTolerance = 1e-4;
+  double divergenceTolerance = 2e-5;
   int maxPressureIterations = 50;  ///< of a projection (range: [1, 1000])
 };
 

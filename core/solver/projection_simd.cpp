@@ -7,13 +7,20 @@
 //   v = v* - grad phi, phi >= 0                       (incompressible SPH, Cummins & Rudman 1999)
 //
 //   sum_j F_ij (phi_i - phi_j) + s_i phi_i
-//     = (m/rho0) sum_j grad W_ij . (v*_i - v*_j)      compression by the neighbours
-//     - 2 rho_i/rho0 grad gamma_i . (v*_i - v_wall)   and by the wall
-//     + gamma_i min(rho_i/rho0 - 1, 0) / dt           room that less dense fluid has
+//     = t_i (m/rho0) sum_j B_i grad W_ij . (v*_i - v*_j)   compression by the neighbours
+//     - 2 rho_i/rho0 grad gamma_i . (v*_i - v_wall)        and by the wall
+//     + gamma_i min(rho_i/rho0 - 1, 0) / T                 room that less dense fluid has
 //   F_ij = -2 (m/rho0) W'(r_ij) / r_ij
 //
 //   grad phi_i = B_i (m/rho0) sum_j (phi_j - phi_i) grad W_ij
-//   B_i^-1 = -(m/rho0) sum_j grad W_ij (x_i - x_j)^T
+//   B_i^-1 = -(m/rho0) sum_j grad W_ij (x_i - x_j)^T, t_i a third of its trace
+//
+// Both are exact for what is linear in space. Without B a packing that a flow has stretched reads compression
+// where there is none: it resists shear as a solid does, and gives energy back when it yields. Beside walls,
+// and fading towards the surface, the compression is the plain sum of pairs, with B = 1 and t = 1: there one
+// side is missing from B, which the wall's term or the surface stands for. Room closes in the time T
+// rather than in a step: what a step takes of it at once comes back as a push in the next, and water at rest
+// trembles. T is half the time in which a particle falls by its spacing, and not less than a step.
 //
 // The wall is in the divergence alone: by Gauss's theorem the kernel's missing part is a flux through it, and
 // the velocity there is the wall's, so that the same flux is missing from the Laplacian; twice, for F_ij is
@@ -27,7 +34,7 @@
 // one side: water at rest stays at rest. It does not conserve momentum to the last digit; where too few
 // neighbours make it ill-conditioned, in spray, the conserving sum of pairs stands in for it. The matrix is
 // symmetric and positive definite: conjugate gradients, preconditioned by the diagonal, from the pressure of
-// the step before.
+// the step before, until a fifth of what that leaves is left, or less than the tolerance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,6 +58,13 @@ HWY_INLINE void withOwnGradient(KernelType kernel, const Use& use) {
   use(WendlandC2{});
 }
 
+/// One over the time in which less dense fluid comes together (1/s).
+inline float roomRate(const StepState& state) {
+  constexpr float kFalls = 0.5F;  // of the time in which a particle falls by its spacing
+  const float once = 1 / state.timeStep, gravity = state.gravity.norm();
+  return gravity > 0 ? std::min(once, std::sqrt(0.5F * gravity / state.spacing) / kFalls) : once;
+}
+
 /// Density, moment, divergence and diagonal, without the surface's share. state.previous holds the
 /// velocities, with the ghost's.
 template <class Kernel>
@@ -62,16 +76,19 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   const Float4* const velocities = state.previous.data();
   ProjectionBuffers& out = state.projection;
   const float slope = state.lattice.massRatio * Shape::kSlope;
-  const float support = state.supportRadius, toGap = support * support / state.timeStep;
+  const float support = state.supportRadius, toRoom = support * support * roomRate(state);
   const bool added = state.addsWallDensity();
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(positions[i], scale);
     const Vec3f own = velocities[i].xyz();
     const PairVector ux = hn::Set(d, own.x()), uy = hn::Set(d, own.y()), uz = hn::Set(d, own.z());
-    PairVector covered = hn::Zero(d), pushes = hn::Zero(d), divergence = hn::Zero(d);
+    PairVector covered = hn::Zero(d), pushes = hn::Zero(d);
     PairVector sumX = hn::Zero(d), sumY = hn::Zero(d), sumZ = hn::Zero(d);
     PairVector xx = hn::Zero(d), yy = hn::Zero(d), zz = hn::Zero(d);
     PairVector xy = hn::Zero(d), xz = hn::Zero(d), yz = hn::Zero(d);
+    // grad W (v_i - v_j)^T, its diagonal and what lies beside it, both sides added.
+    PairVector flowX = hn::Zero(d), flowY = hn::Zero(d), flowZ = hn::Zero(d);
+    PairVector flowXy = hn::Zero(d), flowXz = hn::Zero(d), flowYz = hn::Zero(d);
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     prefetchLists(list.data());
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
@@ -83,20 +100,33 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
       pushes = hn::Add(pushes, push);
       const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
       sumX = hn::Add(sumX, x), sumY = hn::Add(sumY, y), sumZ = hn::Add(sumZ, z);
-      divergence = hn::MulAdd(x, hn::Sub(ux, v.x), divergence);
-      divergence = hn::MulAdd(y, hn::Sub(uy, v.y), divergence);
-      divergence = hn::MulAdd(z, hn::Sub(uz, v.z), divergence);
+      const PairVector vx = hn::Sub(ux, v.x), vy = hn::Sub(uy, v.y), vz = hn::Sub(uz, v.z);
+      flowX = hn::MulAdd(x, vx, flowX), flowY = hn::MulAdd(y, vy, flowY), flowZ = hn::MulAdd(z, vz, flowZ);
+      flowXy = hn::MulAdd(x, vy, hn::MulAdd(y, vx, flowXy));
+      flowXz = hn::MulAdd(x, vz, hn::MulAdd(z, vx, flowXz));
+      flowYz = hn::MulAdd(y, vz, hn::MulAdd(z, vy, flowYz));
       xx = hn::MulAdd(x, pair.x, xx), yy = hn::MulAdd(y, pair.y, yy), zz = hn::MulAdd(z, pair.z, zz);
       xy = hn::MulAdd(x, pair.y, xy), xz = hn::MulAdd(x, pair.z, xz), yz = hn::MulAdd(y, pair.z, yz);
     }
-    const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, divergence);
-    const Float4 sums = sumLanes(sumX, sumY, sumZ, pushes);
-    const float gamma = state.gamma[i];
+    const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, pushes);
+    const Float4 flow = sumLanes(flowX, flowY, flowZ, hn::Zero(d));
+    const Float4 flowRest = sumLanes(flowXy, flowXz, flowYz, hn::Zero(d));
+    const Float4 sums = sumLanes(sumX, sumY, sumZ, hn::Zero(d));
+    const float gamma = state.gamma[i], resting = state.densityGamma(gamma);
     float density = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
-    density = added ? density + 1 - gamma : density / gamma;
-    float source = slope * rest.w + toGap * gamma * std::min(density - 1, 0.0F);
+    density = added ? density + 1 - resting : density / resting;
+    const float toMoment = -slope * scale.inverseSquare;
+    const InverseMoment inverse(toMoment * diagonal.xyz(), toMoment * rest.xyz());
+    float compression = slope * flow.xyz().sum();
+    const bool besideWall = state.wallSlot[i] != FluidState::kNoWall;
+    if (inverse.sound && !besideWall) {
+      const float third = toMoment * diagonal.xyz().sum() / 3;
+      const float exact = third * slope * inverse.contract(flow.xyz(), flowRest.xyz());
+      compression += ProjectionBuffers::inside(density) * (exact - compression);
+    }
+    float source = compression + toRoom * gamma * std::min(density - 1, 0.0F);
     Vec3f missing = slope * scale.inverseSupport * sums.xyz();
-    if (state.wallSlot[i] != FluidState::kNoWall) {
+    if (besideWall) {
       const Vec3f wall = (added ? 1 : density) * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
       const Vec3f relative = own - state.boundary.wallVelocity(positions[i].xyz());
       source -= 2 * support * wall.dot(relative);
@@ -104,10 +134,9 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     }
     state.density[i] = density;
     out.residual[i] = source;
-    out.diagonal[i] = -2 * slope * sums.w;
+    out.diagonal[i] = -2 * slope * rest.w;
     out.missing[i] = missing.norm();
-    const float toMoment = -slope * scale.inverseSquare;
-    out.inverse[i] = InverseMoment(toMoment * diagonal.xyz(), toMoment * rest.xyz());
+    out.inverse[i] = inverse;
   }
 }
 
@@ -207,14 +236,15 @@ class SurfaceShare {
     const float nearest = 0.25F / supportRatio;  // a quarter of a spacing below the surface
     for (std::size_t k = 0; k < values_.size(); ++k) {
       const float density = static_cast<float>(k) / static_cast<float>(values_.size() - 1);
-      if (surface(density) == 0) break;
+      const float outside = 1 - ProjectionBuffers::inside(density);
+      if (outside == 0) break;
       float low = nearest, high = 1;  // gamma grows with e
       for (int halving = 0; halving < 24; ++halving) {
         const float middle = 0.5F * (low + high);
         (withKernel(kernel, [&](auto shape) { return shape.planeGamma(middle); }) < density ? low : high) =
             middle;
       }
-      values_[k] = surface(density) * 2 / high;
+      values_[k] = outside * 2 / high;
     }
   }
   float operator()(float density) const {
@@ -224,10 +254,6 @@ class SurfaceShare {
   }
 
  private:
-  /// Densities between 0.88 and 0.94 fade from surface to inside: the first layer of water at rest reads 0.8,
-  /// the second 0.99, and a disordered packing inside varies by some percent.
-  static float surface(float density) { return std::clamp((0.94F - density) / 0.06F, 0.0F, 1.0F); }
-
   std::array<float, 257> values_{};
 };
 
@@ -246,9 +272,11 @@ class PotentialSolve {
         (static_cast<double>(state_.supportRadius) * static_cast<double>(state_.supportRadius)) /
         static_cast<double>(std::max<std::size_t>(n, 1));
     Sums sums = precondition();
+    constexpr double kLeft = 0.2;  // of the divergence that the pressure of the step before leaves
+    const double enough = std::max(parameters.divergenceTolerance, kLeft * sums.magnitude * toError);
     state_.pressureIterations = 0;
     while (state_.pressureIterations < parameters.maxPressureIterations && sums.square > 0 &&
-           sums.magnitude * toError > parameters.divergenceTolerance) {
+           sums.magnitude * toError > enough) {
       apply();
       const double curvature = parallelSum(state_.pool, state_.particles.size(), [&](std::size_t i) {
         if (!b_.active[i]) b_.image[i] = 0;

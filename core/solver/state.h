@@ -79,6 +79,11 @@ struct InverseMoment {
             diagonal[1] * v[1] + (rest[0] * v[0] + rest[2] * v[2]),
             diagonal[2] * v[2] + (rest[1] * v[0] + rest[2] * v[1])};
   }
+  /// The trace of its product with a matrix of that diagonal; `others` are the sums of xy and yx, xz and zx,
+  /// yz and zy.
+  float contract(const Vec3f& onDiagonal, const Vec3f& others) const {
+    return diagonal.dot(onDiagonal) + rest.dot(others);
+  }
 };
 
 /// Where a projection of the velocities works, a value a particle.
@@ -89,6 +94,11 @@ struct ProjectionBuffers {
   std::vector<float> residual, image;  ///< (m^2/s)
   std::vector<std::uint8_t> active;    ///< whether it has a part in the solve
   std::vector<InverseMoment> inverse;
+
+  /// How much of a particle of that density is inside, 0 to 1, rather than at the surface. It fades between
+  /// densities of 0.88 and 0.94: the first layer of water at rest reads 0.8, the second 0.99, and a
+  /// disordered packing inside varies by some percent.
+  static float inside(float density) { return std::clamp((density - 0.88F) / 0.06F, 0.0F, 1.0F); }
 
   void resize(std::size_t n) {
     potential.resize(n), diagonal.resize(n), missing.resize(n), residual.resize(n), image.resize(n);
@@ -179,8 +189,10 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
   /// times the constraint's derivative with respect to gamma.
   float wallPush(std::size_t i) const {
-    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / gamma[i];
+    return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
+  /// What the sum of the neighbours is divided by: gamma, and with a projection what fluid at rest has of it.
+  float densityGamma(float g) const { return projects() ? g * lattice.besideWalls(g) : g; }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }
 };
