@@ -255,6 +255,7 @@ struct ViewOptions {
   std::string scene;
   bool paused = false;
   std::optional<long> frames;
+  int memory = static_cast<int>(TimeLine::kLimit >> 20U);  ///< (MiB)
 };
 
 /// The scene to begin with.
@@ -287,7 +288,12 @@ void savePicture(const Image& image) {
 int view(const ViewOptions& options, const CommonOptions& common) {
   const fs::path file = options.scene.empty() ? defaultScene() : fs::path(options.scene);
   const auto read = [&] { return openScene(file, common.overrides); };
-  WindowOptions window{common.threads, common.overrides, !options.paused, options.frames, savePicture};
+  WindowOptions window{common.threads,
+                       common.overrides,
+                       !options.paused,
+                       options.frames,
+                       static_cast<std::size_t>(options.memory) << 20U,
+                       savePicture};
   window.water = options.scene.empty();
   window.gallery = galleryEntries;
   window.open = [](const fs::path& other) { return openScene(other, {}); };
@@ -311,7 +317,13 @@ Command viewCommand() {
               .target = &options->frames,
               .value = "N",
               .help = "Closes after so many drawn frames.",
-              .range = {{1, 1'000'000'000}}}},
+              .range = {{1, 1'000'000'000}}},
+             {.name = "--memory",
+              .target = &options->memory,
+              .value = "MIB",
+              .help =
+                  "Memory that the states of the time line may take; the less, the longer the way to a time.",
+              .range = {{1, 1'000'000}}}},
             [options](const CommonOptions& common) { return view(*options, common); },
             "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
             "Keys: space plays and pauses, right and left arrow step a frame forth and back, Home and End "

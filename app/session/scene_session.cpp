@@ -259,8 +259,8 @@ void SceneSession::read(const std::string& text, SceneChange& change, Files& nam
   Scene scene = parseScene(text, reader_.file, reader_.options.overrides, named);
   std::string start = startOf(scene);
   if (start != reader_.start)
-    change.simulation =
-        std::make_unique<SimulationThread>(scene, reader_.options.threads, reader_.options.pace);
+    change.simulation = std::make_unique<SimulationThread>(scene, reader_.options.threads,
+                                                           reader_.options.pace, reader_.options.past);
   reader_.start = std::move(start);
   change.scene = std::move(scene);
 }

@@ -93,8 +93,9 @@ enum class Pace { realTime, unlimited };
 
 class SimulationThread {
  public:
-  /// Fills the scene on the calling thread; `threads` as for Simulation.
-  SimulationThread(const Scene& scene, int threads, Pace pace);
+  /// Fills the scene on the calling thread; `threads` as for Simulation. `past`: bytes for the states of the
+  /// time line.
+  SimulationThread(const Scene& scene, int threads, Pace pace, std::size_t past = TimeLine::kLimit);
   /// Waits for the frame that is being computed; a state that is still to be saved is saved.
   ~SimulationThread();
   SimulationThread(const SimulationThread&) = delete;
@@ -226,6 +227,7 @@ struct SessionOptions {
   std::vector<Override> overrides;  ///< --set, over whatever the file says
   int threads = 0;
   Pace pace = Pace::realTime;
+  std::size_t past = TimeLine::kLimit;  ///< bytes for the states of the time line
 };
 
 /// What is to be saved, and as what.

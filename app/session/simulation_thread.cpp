@@ -52,10 +52,11 @@ struct SimulationThread::Water {
   int method;
 };
 
-SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace)
+SimulationThread::SimulationThread(const Scene& scene, int threads, Pace pace, std::size_t past)
     : threads_(threads),
       pace_(pace),
       simulation_(std::make_unique<Simulation>(scene, threads)),
+      line_(past),
       scene_(simulation_->scene()),
       walls_(simulation_->walls()),
       watchPressure_(scene.view.color == ColorField::pressure) {

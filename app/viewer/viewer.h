@@ -145,9 +145,10 @@ struct DrawnFrame {
 
 struct WindowOptions {
   int threads = 0;
-  std::vector<Override> overrides;  ///< of the scene, for when its file is read again
-  bool playing = true;              ///< start at once
-  std::optional<long> frames;       ///< close after so many drawn frames
+  std::vector<Override> overrides;      ///< of the scene, for when its file is read again
+  bool playing = true;                  ///< start at once
+  std::optional<long> frames;           ///< close after so many drawn frames
+  std::size_t past = TimeLine::kLimit;  ///< bytes for the states of the time line
   /// Keeps a picture that the user asked for; called on a thread of its own, for one picture after the other.
   std::function<void(const Image&)> savePicture;
   /// Told of each frame that has been drawn, on the window's thread.

@@ -63,12 +63,13 @@ struct Prepared {
 /// A scene that is being prepared on a thread of its own.
 class Preparation {
  public:
-  Preparation(std::string name, std::function<Scene()> read, int threads)
+  Preparation(std::string name, std::function<Scene()> read, const WindowOptions& options)
       : name_(std::move(name)), status_(std::make_shared<PreparationStatus>()) {
-    prepared_ = std::async(std::launch::async, [status = status_, read = std::move(read), threads] {
+    prepared_ = std::async(std::launch::async, [status = status_, read = std::move(read),
+                                                threads = options.threads, past = options.past] {
       const ProgressScope watched(*status);
       Scene scene = read();
-      auto simulation = std::make_unique<SimulationThread>(scene, threads, Pace::realTime);
+      auto simulation = std::make_unique<SimulationThread>(scene, threads, Pace::realTime, past);
       return Prepared{std::move(scene), std::move(simulation)};
     });
   }
@@ -102,8 +103,7 @@ class Opening {
     if (const auto asked = std::exchange(gallery_.ask, std::nullopt)) {
       gallery_.faults.clear();
       now_.emplace(
-          asked->filename().string(), [open = options_.open, file = *asked] { return open(file); },
-          options_.threads);
+          asked->filename().string(), [open = options_.open, file = *asked] { return open(file); }, options_);
     }
     std::erase_if(left_, [](const Preparation& one) { return one.ready(); });
     gallery_.opening = now_ ? now_->name() + (now_->doing().empty() ? " ..." : ": " + now_->doing()) : "";
@@ -144,7 +144,7 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
   const std::string title = (scene.name.empty() ? scene.stem() : scene.name) + " - Migiwa";
   std::string preparing;
   window.setTitle(title);
-  SceneSession session(scene, {options.overrides, options.threads, Pace::realTime});
+  SceneSession session(scene, {options.overrides, options.threads, Pace::realTime, options.past});
   printWarnings(simulation->scene());
   SceneEditor editor = makeEditor(session);
   WhatIfModel whatIf;
@@ -243,7 +243,7 @@ std::optional<Prepared> awaited(Preparation& preparing, GlfwWindow& window) {
 }  // namespace
 
 void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options) {
-  Preparation preparing(name, read, options.threads);
+  Preparation preparing(name, read, options);
   std::optional<Prepared> prepared;
   if (preparing.ready(kPatience)) prepared = preparing.take();
   std::optional<GlfwWindow> window;

@@ -254,7 +254,7 @@ with tempfile.TemporaryDirectory(prefix="migiwa_window_") as folder:
     environment = os.environ | {"HOME": folder, "MIGIWA_CACHE": folder}
     disk = Disk()
     with (scratch / "errors").open("w") as errors:
-        process = subprocess.Popen([program, "view", "scene.json"], cwd=scratch, env=environment, stdout=errors, stderr=errors)
+        process = subprocess.Popen([program, "view", "scene.json", "--memory", "16"], cwd=scratch, env=environment, stdout=errors, stderr=errors)
     try:
         window = Person()
     except TimeoutError as error:
