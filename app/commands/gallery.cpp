@@ -1,12 +1,12 @@
 // What `migiwa view` can open: the scenes that are shipped, those that were open last, and scenes that are
 // made around a mesh, points or a SLIM surface.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 
 #include "app/commands/command.h"
 #include "core/base/files.h"
+#include "core/base/hash.h"
 #include "core/base/messages.h"
 #include "core/scene/json.h"
 #include "core/slim/file.h"
@@ -84,7 +84,7 @@ Json vectorOf(const Vec3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-/// Of the nodes' balls.
+/// Of the nodes' centres.
 Bounds boundsOf(const SlimData& data) {
   Bounds bounds;
   for (const auto& node : data.nodes) bounds.include(node.centre.cast<double>());
@@ -123,14 +123,20 @@ Json sceneAround(const Json& surface, const Bounds& bounds, const std::string& n
   return scene;
 }
 
-/// The scene file itself, or one that is made around what the file holds.
+/// Whether the file holds a JSON object that is no mesh, whatever its name ends in.
+bool isObject(const fs::path& file) {
+  if (file.extension() == ".gltf") return false;
+  std::ifstream in(file);
+  char first = 0;
+  return in >> first && first == '{';
+}
+
+/// The scene file itself, or one that is made around what the file holds. One that was made before is taken
+/// as it is: the user may have changed it.
 fs::path sceneFileFor(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   Json surface{{"shape", "slim"}, {"fluid", "outside"}};
   Bounds bounds;
-  if (extension == ".json") {
+  if (file.extension() == ".json" || isObject(file)) {
     const Json root = rootOf(file);
     if (!root.is_object() || !root.contains("format") || !root["format"].is_string()) return file;
     bounds = boundsOf(readSlimFile(file));
@@ -143,10 +149,14 @@ fs::path sceneFileFor(const fs::path& file) {
     if (exact) surface["shape"] = "mesh";
     surface[exact ? "file" : "mesh"] = fs::absolute(file).string();
   }
-  const fs::path folder = cacheFolder().empty() ? fs::temp_directory_path() : cacheFolder() / "opened";
+  const fs::path folder =
+      cacheFolder().empty() ? fs::temp_directory_path() / "migiwa_opened" : cacheFolder() / "opened";
   fs::create_directories(folder);
-  const fs::path scene = folder / (file.stem().string() + ".json");
-  writeTextFile(scene, prettyJson(sceneAround(surface, bounds, file.filename().string())));
+  const std::string text = prettyJson(sceneAround(surface, bounds, file.filename().string()));
+  // Files of one name in several folders, and another shape in the same file, have scenes of their own.
+  const std::string which = hexDigits(checksum(kEmptyChecksum, text.data(), text.size())).substr(0, 8);
+  const fs::path scene = folder / (file.stem().string() + '-' + which + ".json");
+  if (!fs::exists(scene)) writeTextFile(scene, text);
   return scene;
 }
 

@@ -131,7 +131,8 @@ bool ProbeSession::poll(InspectModel& model, const Scene& scene, const Settings&
     Outcome outcome = asking_.get();
     if (!std::exchange(dropped_, false)) {
       probe_ = std::move(outcome.probe);
-      model.walls = std::move(outcome.answers);
+      // Another particle may have been picked meanwhile.
+      if (model.id == outcome.answers.id) model.walls = std::move(outcome.answers);
       news = true;
     }
   }
@@ -140,9 +141,9 @@ bool ProbeSession::poll(InspectModel& model, const Scene& scene, const Settings&
   asked.solver = now.solver;
   asked.boundary = now.boundary;
   const auto clock = std::chrono::steady_clock::now();
-  if (isUpToDate(model, asked) || (probe_ != nullptr && clock - asked_ < kBetweenQuestions)) return news;
+  if (isUpToDate(model, asked) || clock - asked_ < kBetweenQuestions) return news;
   asked_ = clock;
-  asking_ = std::async(std::launch::async, [probe = probe_, scene = std::move(asked),
+  asking_ = std::async(std::launch::async, [probe = probe_, scene = std::move(asked), id = model.picked->id,
                                             at = model.picked->position, time = model.time]() mutable {
     Outcome outcome;
     try {
@@ -150,8 +151,10 @@ bool ProbeSession::poll(InspectModel& model, const Scene& scene, const Settings&
       const bool more = probe->makeNext();
       outcome.answers = probe->ask(at, time);
       outcome.answers.complete = !more;
+      outcome.answers.id = id;
       outcome.probe = std::move(probe);
     } catch (const std::exception& error) {
+      outcome.answers.id = id;
       outcome.answers.at = at;
       outcome.answers.time = time;
       outcome.answers.fault = error.what();

@@ -95,6 +95,7 @@ struct MethodGamma {
 
 /// What walls are at a place and a time.
 struct WallAnswers {
+  std::uint32_t id = 0;      ///< of the particle that is there
   Vec3f at = Vec3f::Zero();  ///< (m)
   double time = 0;           ///< (s)
   double reference = 1;      ///< gamma by far more directions than any method has

@@ -112,10 +112,8 @@ void Viewer::lookInto(const FrameView& frame) {
   InspectModel& model = *options_.inspect;
   model.picked.reset();
   model.time = frame.info.time;
-  if (!model.id) {
-    model.walls.reset();
-    return;
-  }
+  if (model.walls && model.id != model.walls->id) model.walls.reset();
+  if (!model.id) return;
   for (std::size_t k = 0; k < frame.positions.size() && !model.picked; ++k) {
     const std::uint32_t id = frame.ids.empty() ? static_cast<std::uint32_t>(k) : frame.ids[k];
     if (id != *model.id) continue;

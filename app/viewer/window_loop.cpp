@@ -95,6 +95,9 @@ class Opening {
   /// `left`: those that nobody waits for any more.
   Opening(const WindowOptions& options, GalleryModel& gallery, std::vector<Preparation>& left)
       : options_(options), gallery_(gallery), left_(left) {}
+  ~Opening() { leave(); }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
 
   /// Begins what is asked for; returns the scene that is ready, or nothing.
   std::optional<Prepared> poll() {
@@ -188,8 +191,13 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
       window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
     }
     if (!input.dropped.empty() && options.open) gallery.ask = input.dropped.front();
+    for (std::size_t k = 1; k < input.dropped.size(); ++k)
+      std::cerr << input.dropped[k] << ": not opened, the window shows one scene at a time\n";
     if (!gallery.opening.empty()) redraws = kFramesAfterInput;
-    if (std::optional<Prepared> next = opening.poll()) return next;
+    if (std::optional<Prepared> next = opening.poll()) {
+      if (saving.valid()) saving.get();
+      return next;
+    }
     if (trials.poll(whatIf, *simulation, viewer.settings())) redraws = kFramesAfterInput;
     if (probes.poll(inspect, simulation->scene(), viewer.settings())) redraws = kFramesAfterInput;
     if (const std::optional<Settings> inForce = simulation->takeSettings()) {
@@ -244,6 +252,7 @@ std::optional<Prepared> awaited(Preparation& preparing, GlfwWindow& window) {
 
 void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options) {
   Preparation preparing(name, read, options);
+  std::vector<Preparation> left;  // after the window: it closes before they end
   std::optional<Prepared> prepared;
   if (preparing.ready(kPatience)) prepared = preparing.take();
   std::optional<GlfwWindow> window;
@@ -256,7 +265,6 @@ void runWindow(const std::string& name, const std::function<Scene()>& read, cons
   }
   if (!prepared) prepared = awaited(preparing, *window);
   WindowOptions now = options;
-  std::vector<Preparation> left;
   while (prepared) {
     prepared = show(*window, prepared->scene, std::move(prepared->simulation), now, left);
     // What was opened since plays as particles, with the settings of its file.

@@ -187,7 +187,7 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   /// Whether the walls' part of the density is added, rather than divided by gamma.
   bool addsWallDensity() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::added; }
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
-  /// times the constraint's derivative with respect to gamma.
+  /// times the constraint's derivative with respect to gamma, the slope of besideWalls() left out.
   float wallPush(std::size_t i) const {
     return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
