@@ -96,7 +96,8 @@ class SimulationThread {
   /// Fills the scene on the calling thread; `threads` as for Simulation. `past`: bytes for the states of the
   /// time line.
   SimulationThread(const Scene& scene, int threads, Pace pace, std::size_t past = TimeLine::kLimit);
-  /// Waits for the frame that is being computed; a state that is still to be saved is saved.
+  /// Waits for the frame that is being computed; a state that is still to be saved is saved, after the frames
+  /// to the time that it is on its way to.
   ~SimulationThread();
   SimulationThread(const SimulationThread&) = delete;
   SimulationThread& operator=(const SimulationThread&) = delete;
@@ -135,14 +136,16 @@ class SimulationThread {
   /// Goes on from a save of this scene with the settings of now; plays on if it did.
   void loadState(std::filesystem::path file);
 
-  /// No frame begins until release(), whether it plays or not. `why`: who holds it and what for, such as
+  /// No frame begins until release(), whether it plays or not, but for those on the way to a time that was
+  /// asked for before. `why`: who holds it and what for, such as
   /// "\"What if\" measures".
   void hold(std::string why);
   /// Goes on playing if it did and was not paused since.
   void release();
 
   /// The state between two frames, to go on from elsewhere. Whoever waits for it waits for the frame that is
-  /// being computed, at most; std::future_error where the simulation ends first.
+  /// being computed and, on the way to another time, for those to that time; std::future_error where the
+  /// simulation ends first.
   std::future<StateImage> capture();
 
   /// Swaps the newest frame into `frame` if there is one that was not taken yet.
@@ -166,12 +169,14 @@ class SimulationThread {
   bool mayAdvance() const;
   bool refuses(const char* request, bool needsGoodState);
   void begin();
+  void settle();
   void stop(std::string why);
-  /// A place that is asked for: a frame or, without one, a time (s).
+  /// A place that is asked for: a frame or, without one, a time (s), and so many frames before it.
   struct Goal {
     int branch;
     std::optional<long> frame;
     double time;
+    long back = 0;
   };
   template <class Change>
   void ask(const char* request, const Change& change);

@@ -123,6 +123,7 @@ void SimulationThread::reset() {
 void SimulationThread::apply(const Settings& settings) {
   const std::lock_guard lock(mutex_);
   settings_ = settings;
+  settled_.reset();
   wake_.notify_one();
 }
 
@@ -197,7 +198,10 @@ void SimulationThread::work() {
   while (waitForWork(lock)) {
     try {
       // They go elsewhere.
-      if (reset_ || load_) travel_.reset();
+      if (travel_ && (reset_ || load_)) {
+        travel_.reset();
+        settle();
+      }
       // Whatever else is asked for is of the place that it is on its way to.
       if (!travel_) applyRequests(lock);
       if (goal_) {
@@ -211,11 +215,12 @@ void SimulationThread::work() {
     } catch (const std::exception& error) {
       if (!lock.owns_lock()) lock.lock();
       travel_.reset();
+      settle();
       stop(error.what());
     }
   }
   try {
-    while (save_ && travel_) travelOn(lock);
+    while (save_ && travel_) goal_ ? depart(lock) : travelOn(lock);
     if (save_) applySave(lock);
   } catch (const std::exception&) {
     // Nobody is left to tell; an older file stays.
@@ -241,6 +246,11 @@ bool SimulationThread::waitForWork(std::unique_lock<std::mutex>& lock) {
   return !quit_;
 }
 
+/// Whoever shows settings is to show those in force, unless others have been asked for.
+void SimulationThread::settle() {
+  if (!settings_) settled_ = simulation_->settings();
+}
+
 /// A simulation that stopped itself, or could not be made, waits for a reset.
 void SimulationThread::stop(std::string why) {
   status_.playing = false;
@@ -264,13 +274,17 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
   const bool reset = std::exchange(reset_, false);
   const std::optional<Settings> settings = std::exchange(settings_, std::nullopt);
   if (!reset && !settings) return;
+  const bool stopped = status_.stopped;
   lock.unlock();
   std::vector<std::string> faults;
   try {
     const Settings before = simulation_->settings();
-    if (settings) {
+    // A change of the camera or of a name in the scene's text comes with the same settings.
+    if (settings && !changesBetween(simulation_->scene(), before, *settings).empty()) {
       simulation_->apply(*settings);
-      line_.changed(*simulation_, before);
+      // From a state that it has stopped in, perhaps between two frames, no branch begins.
+      if (!stopped || simulation_->frame() >= line_.lastFrame(line_.branch()))
+        line_.changed(*simulation_, before);
     }
   } catch (const std::exception& error) {
     faults = texts(error);
@@ -278,12 +292,11 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
   if (reset) {
     auto again = std::make_unique<Simulation>(scene_, threads_);
     again->apply(simulation_->settings());
+    line_.begin(*again);
     simulation_ = std::move(again);
-    line_.begin(*simulation_);
   }
-  Settings inForce = simulation_->settings();
   lock.lock();
-  if (!faults.empty()) settled_ = std::move(inForce);
+  if (!faults.empty()) settle();
   status_.settingsFaults = std::move(faults);
   if (reset) begin();
   publish(lock);
@@ -322,8 +335,8 @@ void SimulationThread::applyLoad(std::unique_lock<std::mutex>& lock) {
     auto loaded = std::make_unique<Simulation>(scene_, threads_);
     loaded->apply(simulation_->settings());
     readSave(file, *loaded, passedOver);
+    line_.begin(*loaded);
     simulation_ = std::move(loaded);
-    line_.begin(*simulation_);
   } catch (const std::exception& error) {
     faults = texts(error);
   }
@@ -331,9 +344,8 @@ void SimulationThread::applyLoad(std::unique_lock<std::mutex>& lock) {
   lock.lock();
   status_.stateNote = faults.empty() ? noteOf("Loaded", file, time) : "Not loaded, the simulation goes on:";
   status_.stateFaults = std::move(faults);
-  if (!status_.stateFaults.empty()) return;
-  begin();
-  publish(lock);
+  if (status_.stateFaults.empty()) begin();
+  publish(lock);  // after a fault, too: a way that it was on ends here
 }
 
 void SimulationThread::advance(std::unique_lock<std::mutex>& lock) {

@@ -20,8 +20,7 @@ Scene withSettings(const Scene& scene, const Settings& settings) {
 
 /// What the settings were changed to, such as "/solver/tolerance=0.01".
 std::string nameOf(const Simulation& simulation, const Settings& before) {
-  const std::vector<std::string> changes =
-      changesBetween(withSettings(simulation.scene(), before), simulation.scene());
+  const std::vector<std::string> changes = changesBetween(simulation.scene(), before, simulation.settings());
   if (changes.empty()) return "the same settings";
   if (changes.size() == 1) return changes.front();
   return changes.front() + " and " + std::to_string(changes.size() - 1) + " more";
@@ -29,13 +28,16 @@ std::string nameOf(const Simulation& simulation, const Settings& before) {
 
 }  // namespace
 
+std::vector<std::string> changesBetween(const Scene& scene, const Settings& before, const Settings& now) {
+  return changesBetween(withSettings(scene, before), withSettings(scene, now));
+}
+
 void TimeLine::begin(Simulation& simulation) {
-  branches_.clear();
-  bytes_ = 0;
+  std::map<int, Branch> branches;
+  const auto run = branches.emplace(1, branchFrom(simulation, "run", 0, simulation.settings())).first;
+  bytes_ = run->second.moments.begin()->second.bytes;
   newest_ = branch_ = 1;
-  const long frame = simulation.frame();
-  branches_[1] = {"run", 0, frame, frame, simulation.time(), simulation.settings(), {}, {}};
-  keep(simulation);
+  branches_.swap(branches);
 }
 
 void TimeLine::reached(Simulation& simulation) {
@@ -47,7 +49,7 @@ void TimeLine::reached(Simulation& simulation) {
   const auto& [kept, moment] = *branch.moments.rbegin();
   // Times are sums of time steps, and not exact.
   if (frame - kept < kMostFrames && branch.end - moment.time < kInterval * (1 - 1e-6)) return;
-  keep(simulation);
+  bytes_ += branch.moments.emplace(frame, momentOf(simulation)).first->second.bytes;
   fitLimit();
 }
 
@@ -55,17 +57,20 @@ void TimeLine::changed(Simulation& simulation, const Settings& before) {
   const long frame = simulation.frame();
   Branch& branch = branches_.at(branch_);
   if (frame < branch.last) {
-    const int parent = std::exchange(branch_, ++newest_);
-    branches_[branch_] = {nameOf(simulation, before), parent, frame, frame,
-                          simulation.time(),          before, {},    {}};
-    keep(simulation);
+    Branch begun = branchFrom(simulation, nameOf(simulation, before), branch_, before);
+    begun.changes[frame] = simulation.settings();
+    const std::size_t bytes = begun.moments.begin()->second.bytes;
+    branches_.emplace(newest_ + 1, std::move(begun));
+    // From here on nothing fails.
+    branch_ = ++newest_;
+    bytes_ += bytes;
     while (branches_.size() > kMostBranches && dropBranch()) {
     }
     fitLimit();
-  } else if (frame == branch.first && branch.parent != 0) {
-    branch.name = nameOf(simulation, branch.settings);
+    return;
   }
-  branches_.at(branch_).changes[frame] = simulation.settings();
+  if (frame == branch.first && branch.parent != 0) branch.name = nameOf(simulation, branch.settings);
+  branch.changes[frame] = simulation.settings();
 }
 
 const Settings* TimeLine::changeAt(long frame) const {
@@ -92,6 +97,20 @@ TimeLine::Origin TimeLine::origin(int branch, std::optional<long> frame, double 
   return {moment->second.image, *settings, moment->first};
 }
 
+long TimeLine::frameAt(int branch, double time) const {
+  const Branch& in = branches_.at(branch);
+  const Origin from = origin(branch, std::nullopt, time);
+  long frame = from.frame;
+  double now = in.moments.at(frame).time, step = from.settings.solver.timeStep;
+  for (; frame < in.last; ++frame) {
+    if (const auto changed = in.changes.find(frame); changed != in.changes.end())
+      step = changed->second.solver.timeStep;
+    if (now + 0.5 * step > time) break;
+    now += step;
+  }
+  return frame;
+}
+
 TimeLineView TimeLine::view(const Simulation& simulation) const {
   TimeLineView view;
   view.branch = branch_;
@@ -109,11 +128,19 @@ TimeLineView TimeLine::view(const Simulation& simulation) const {
   return view;
 }
 
-void TimeLine::keep(Simulation& simulation) {
+TimeLine::Moment TimeLine::momentOf(Simulation& simulation) {
   auto image = std::make_shared<const StateImage>(StateImage::of(simulation));
   const std::size_t bytes = image->bytes();
-  bytes_ += bytes;
-  branches_.at(branch_).moments[simulation.frame()] = {simulation.time(), std::move(image), bytes};
+  return {simulation.time(), std::move(image), bytes};
+}
+
+/// With its first moment, so that a branch is never without one.
+TimeLine::Branch TimeLine::branchFrom(Simulation& simulation, std::string name, int parent,
+                                      const Settings& settings) {
+  const long frame = simulation.frame();
+  Branch branch{std::move(name), parent, frame, frame, simulation.time(), settings, {}, {}};
+  branch.moments.emplace(frame, momentOf(simulation));
+  return branch;
 }
 
 void TimeLine::fitLimit() {

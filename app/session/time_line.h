@@ -15,6 +15,9 @@
 
 namespace migiwa {
 
+/// Where two settings of a scene differ, as changesBetween() says it of two scenes; empty: nowhere.
+std::vector<std::string> changesBetween(const Scene& scene, const Settings& before, const Settings& now);
+
 class TimeLine {
  public:
   /// States are kept this far apart, or this many frames, whichever comes first.
@@ -27,6 +30,8 @@ class TimeLine {
   /// `limit`: bytes that states may take. The start of the first branch and that of the present one are kept
   /// whatever they take.
   explicit TimeLine(std::size_t limit = kLimit) : limit_(limit) {}
+
+  // Where memory runs out, the line stays as it was.
 
   /// Forgets everything: the run begins with the state of now.
   void begin(Simulation& simulation);
@@ -41,6 +46,8 @@ class TimeLine {
   bool hasBranch(int branch) const { return branches_.contains(branch); }
   long firstFrame(int branch) const { return branches_.at(branch).first; }
   long lastFrame(int branch) const { return branches_.at(branch).last; }
+  /// The frame of a branch that is nearest to a time (s).
+  long frameAt(int branch, double time) const;
   /// The branch from which this one went; nothing: the run began with it, or that one is no longer kept.
   std::optional<int> parent(int branch) const;
   int branch() const { return branch_; }
@@ -73,7 +80,8 @@ class TimeLine {
     std::map<long, Moment> moments;  ///< the first frame's is always there
   };
 
-  void keep(Simulation& simulation);
+  static Moment momentOf(Simulation& simulation);
+  static Branch branchFrom(Simulation& simulation, std::string name, int parent, const Settings& settings);
   void fitLimit();
   bool thin();
   bool dropBranch();

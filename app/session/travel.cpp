@@ -13,9 +13,9 @@ void SimulationThread::goTo(int branch, double time) {
 
 void SimulationThread::stepBack() {
   // From where it is going, so that no press of a key is lost.
-  ask("Step back", [this](const Goal& from) {
+  ask("Step back", [](const Goal& from) {
     Goal goal = from;
-    goal.frame = from.frame.value_or(status_.line.frame) - 1;
+    ++goal.back;
     return goal;
   });
 }
@@ -35,17 +35,22 @@ void SimulationThread::ask(const char* request, const Change& change) {
 void SimulationThread::depart(std::unique_lock<std::mutex>& lock) {
   Goal goal = *std::exchange(goal_, std::nullopt);
   if (!line_.hasBranch(goal.branch)) goal.branch = line_.branch();
-  // Before its first frame a branch is what it went from.
-  if (goal.frame && *goal.frame < line_.firstFrame(goal.branch)) {
-    if (const std::optional<int> parent = line_.parent(goal.branch)) goal.branch = *parent;
+  if (const long back = std::exchange(goal.back, 0); back > 0)
+    goal.frame = (goal.frame ? *goal.frame : line_.frameAt(goal.branch, goal.time)) - back;
+  // Before its first frame a branch is what it went from, which may have begun at that frame, too.
+  while (goal.frame && *goal.frame < line_.firstFrame(goal.branch)) {
+    const std::optional<int> parent = line_.parent(goal.branch);
+    if (!parent) break;
+    goal.branch = *parent;
   }
   if (goal.frame)
     goal.frame = std::clamp(*goal.frame, line_.firstFrame(goal.branch), line_.lastFrame(goal.branch));
   const TimeLine::Origin origin = line_.origin(goal.branch, goal.frame, goal.time);
   const long now = simulation_->frame();
   const bool later = goal.frame ? *goal.frame < now : goal.time < simulation_->time();
-  const bool onTheWay =
-      !simulation_->stopped() && goal.branch == line_.branch() && now >= origin.frame && !later;
+  // Where it has thrown, it is between two frames.
+  const bool good = !status_.stopped && !simulation_->stopped();
+  const bool onTheWay = good && goal.branch == line_.branch() && now >= origin.frame && !later;
   travel_ = goal;
   lock.unlock();
   if (!onTheWay) {
@@ -56,7 +61,9 @@ void SimulationThread::depart(std::unique_lock<std::mutex>& lock) {
   }
   lock.lock();
   begin();
-  if (!onTheWay) publish(lock);  // what is nearest, while it goes on
+  if (onTheWay) return;
+  settle();
+  publish(lock);  // what is nearest, while it goes on
 }
 
 bool SimulationThread::arrived(const Goal& goal) const {
@@ -75,7 +82,7 @@ void SimulationThread::travelOn(std::unique_lock<std::mutex>& lock) {
   }
   if (!arrived(*travel_)) return;
   travel_.reset();
-  settled_ = simulation_->settings();
+  settle();
   publish(lock);
 }
 
@@ -87,7 +94,7 @@ void SimulationThread::advanceFrame(bool watchPressure) {
   if (const Settings* changed = line_.changeAt(simulation_->frame())) {
     simulation_->apply(*changed);
     const std::lock_guard lock(mutex_);
-    settled_ = *changed;
+    settle();
   }
 }
 

@@ -1,14 +1,12 @@
 // Going back in a run and on from there: every frame has the bits of a run that went straight there.
 #include "app/session/time_line.h"
 
-#include <functional>
-#include <random>
-
 #include <gtest/gtest.h>
 
-#include "app/session/session.h"
 #include "core/scene/scene_file.h"
 #include "tests/render/test_scene.h"
+#include "tests/render/time_line_runs.h"
+#include "tests/support/test_effects.h"
 
 namespace migiwa {
 namespace {
@@ -30,88 +28,12 @@ Scene busyScene() {
                     "busy.json");
 }
 
-Settings without(const Scene& scene) {
-  Settings settings{scene.solver, scene.boundary, scene.effects};
-  settings.boundary.handling = BoundaryHandling::none;
-  return settings;
-}
-
 Settings coarser(const Scene& scene) {
   Settings settings{scene.solver, scene.boundary, scene.effects};
   settings.solver.timeStep = 0.008;
   settings.solver.supportRatio = 2.2;
   return settings;
 }
-
-/// Of a run that goes straight on, after every frame: the hash and the time.
-struct Straight {
-  std::vector<std::uint64_t> hashes;
-  std::vector<double> times;
-
-  void take(const Simulation& simulation) {
-    hashes.push_back(simulation.stateHash());
-    times.push_back(simulation.time());
-  }
-  /// `change` is called before each frame.
-  static Straight run(
-      const Scene& scene, long frames,
-      const std::function<void(Simulation&, long)>& change = [](Simulation&, long) {}) {
-    Straight straight;
-    Simulation simulation(scene, 1);
-    straight.take(simulation);
-    for (long frame = 0; frame < frames; ++frame) {
-      change(simulation, frame);
-      simulation.advanceFrame();
-      straight.take(simulation);
-    }
-    return straight;
-  }
-};
-
-class TimeLineTest : public ::testing::Test {
- protected:
-  void open(const Scene& scene) {
-    simulation_ = std::make_unique<SimulationThread>(scene, 1, Pace::unlimited);
-  }
-
-  /// Waits until nothing is under way, and takes the frame that is shown then.
-  void arrive() {
-    for (int k = 0; k < 60000; ++k) {
-      if (!simulation_->status().line.underWay) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    simulation_->capture().get();
-    simulation_->takeFrame(frame_);
-  }
-  void stepOn(long frames) {
-    const long end = simulation_->status().line.frame + frames;
-    for (long k = 0; k < frames; ++k) simulation_->step();
-    for (int k = 0; k < 60000 && simulation_->status().line.frame < end; ++k)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    arrive();
-  }
-  void goTo(int branch, double time) {
-    simulation_->goTo(branch, time);
-    arrive();
-  }
-  long frame() const { return simulation_->status().line.frame; }
-  std::uint64_t hash() const { return frame_.info.stateHash; }
-
-  /// Every frame of the present branch in random order, `times` of them.
-  void expectStraight(const Straight& straight, int branch, int times) {
-    std::mt19937 engine(7);
-    for (int k = 0; k < times; ++k) {
-      const std::size_t to = engine() % straight.hashes.size();
-      goTo(branch, straight.times[to]);
-      ASSERT_EQ(frame(), static_cast<long>(to)) << straight.times[to];
-      ASSERT_EQ(hash(), straight.hashes[to]) << "frame " << to << ", visit " << k;
-      ASSERT_EQ(frame_.info.time, straight.times[to]);
-    }
-  }
-
-  std::unique_ptr<SimulationThread> simulation_;
-  FrameSnapshot frame_;
-};
 
 TEST_F(TimeLineTest, AnyFrameIsThatOfTheStraightRun) {
   open(smallScene());
@@ -226,24 +148,58 @@ TEST_F(TimeLineTest, ASliderThatMovesMakesOneBranch) {
     if (frame == 10) simulation.apply(settings);
   });
   EXPECT_EQ(hash(), straight.hashes[20]);
-  expectStraight(straight, 1, 0);
   goTo(2, straight.times[15]);
   EXPECT_EQ(hash(), straight.hashes[15]);
 }
 
-TEST_F(TimeLineTest, AWayThatIsOvertakenIsDropped) {
-  open(smallScene());
-  stepOn(100);
-  const Straight straight = Straight::run(smallScene(), 100);
-  for (int k = 0; k < 200; ++k) simulation_->goTo(1, straight.times[static_cast<std::size_t>(k * 37 % 100)]);
-  simulation_->goTo(1, straight.times[63]);
+TEST_F(TimeLineTest, TheSameSettingsBeginNoBranch) {
+  const Scene scene = smallScene();
+  open(scene);
+  stepOn(30);
+  goTo(1, 0.05);
+  simulation_->apply({scene.solver, scene.boundary, scene.effects});
   arrive();
-  EXPECT_EQ(frame(), 63);
-  EXPECT_EQ(hash(), straight.hashes[63]);
-  EXPECT_FALSE(simulation_->status().playing);
-  simulation_->play();
-  for (int k = 0; k < 60000 && frame() < 110; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_GE(frame(), 110) << "it plays on from there, and beyond its end";
+  EXPECT_EQ(simulation_->status().line.branches.size(), 1U);
+  Settings settings{scene.solver, scene.boundary, testing::effectsOf(R"({"viscosity": {"xsph": 0.3}})")};
+  for (const char* effects : {R"({"viscosity": {"xsph": 0.1}})", R"({"viscosity": {}})", "{}"}) {
+    simulation_->apply(settings);
+    stepOn(10);
+    goTo(simulation_->status().line.branch, 0.05 + 0.025);
+    settings.effects = testing::effectsOf(effects);
+    const std::size_t before = simulation_->status().line.branches.size();
+    simulation_->apply(settings);
+    arrive();
+    EXPECT_EQ(simulation_->status().line.branches.size(), before + 1) << effects;
+  }
+}
+
+TEST_F(TimeLineTest, StepsBackFromWhereItGoesThroughBranchesThatBeganAtOneFrame) {
+  const Scene scene = smallScene();
+  open(scene);
+  stepOn(30);
+  const Straight straight = Straight::run(scene, 30);
+  Settings settings = without(scene);
+  for (const double tolerance : {0.02, 0.03}) {
+    goTo(simulation_->status().line.branch, straight.times[10]);
+    settings.solver.tolerance = tolerance;
+    simulation_->apply(settings);
+    stepOn(10);
+  }
+  ASSERT_EQ(simulation_->status().line.branch, 3);
+  goTo(3, straight.times[10]);
+  simulation_->stepBack();
+  arrive();
+  EXPECT_EQ(simulation_->status().line.branch, 1);
+  EXPECT_EQ(frame(), 9);
+  EXPECT_EQ(hash(), straight.hashes[9]);
+
+  goTo(3, straight.times[20]);
+  simulation_->goTo(1, straight.times[27]);
+  for (int k = 0; k < 3; ++k) simulation_->stepBack();
+  arrive();
+  EXPECT_EQ(simulation_->status().line.branch, 1);
+  EXPECT_EQ(frame(), 24);
+  EXPECT_EQ(hash(), straight.hashes[24]);
 }
 
 TEST_F(TimeLineTest, WhileTheRunIsHeldItStays) {
