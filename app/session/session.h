@@ -137,8 +137,7 @@ class SimulationThread {
   void loadState(std::filesystem::path file);
 
   /// No frame begins until release(), whether it plays or not, but for those on the way to a time that was
-  /// asked for before. `why`: who holds it and what for, such as
-  /// "\"What if\" measures".
+  /// asked for before. `why`: who holds it and what for, such as "\"What if\" measures".
   void hold(std::string why);
   /// Goes on playing if it did and was not paused since.
   void release();
@@ -217,6 +216,7 @@ class SimulationThread {
   int steps_ = 0;
   std::optional<Settings> settings_, settled_;
   std::optional<Goal> goal_, travel_;  ///< asked for; being carried out
+  bool sooner_ = false;                ///< something was asked for before `goal_`, and is of the place of now
   bool watchPressure_;
   bool watchWater_ = false, hasWater_ = false;  ///< it was asked for; the last frame has it
 

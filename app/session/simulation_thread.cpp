@@ -202,8 +202,8 @@ void SimulationThread::work() {
         travel_.reset();
         settle();
       }
-      // Whatever else is asked for is of the place that it is on its way to.
-      if (!travel_) applyRequests(lock);
+      // Whatever else is asked for since is of the place that it is on its way to.
+      if (!travel_ && (!goal_ || sooner_ || reset_ || load_)) applyRequests(lock);
       if (goal_) {
         depart(lock);
       } else if (travel_) {
@@ -283,8 +283,14 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
     if (settings && !changesBetween(simulation_->scene(), before, *settings).empty()) {
       simulation_->apply(*settings);
       // From a state that it has stopped in, perhaps between two frames, no branch begins.
-      if (!stopped || simulation_->frame() >= line_.lastFrame(line_.branch()))
-        line_.changed(*simulation_, before);
+      if (!stopped || simulation_->frame() >= line_.lastFrame(line_.branch())) {
+        try {
+          line_.changed(*simulation_, before);
+        } catch (...) {
+          simulation_->apply(before);
+          throw;
+        }
+      }
     }
   } catch (const std::exception& error) {
     faults = texts(error);

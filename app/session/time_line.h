@@ -31,7 +31,7 @@ class TimeLine {
   /// whatever they take.
   explicit TimeLine(std::size_t limit = kLimit) : limit_(limit) {}
 
-  // Where memory runs out, the line stays as it was.
+  // Where memory runs out, no branch is begun, and those that there are have their first states.
 
   /// Forgets everything: the run begins with the state of now.
   void begin(Simulation& simulation);

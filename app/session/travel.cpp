@@ -25,6 +25,7 @@ void SimulationThread::ask(const char* request, const Change& change) {
   const std::lock_guard lock(mutex_);
   if (refuses(request, false)) return;
   const std::optional<Goal>& going = goal_ ? goal_ : travel_;
+  if (!going) sooner_ = reset_ || load_ || settings_ || save_ || !captures_.empty();
   goal_ = change(going.value_or(Goal{status_.line.branch, status_.line.frame, status_.line.time}));
   status_.playing = false;
   steps_ = 0;
@@ -34,6 +35,7 @@ void SimulationThread::ask(const char* request, const Change& change) {
 /// Begins the way to what was last asked for. What another way has not reached yet is dropped.
 void SimulationThread::depart(std::unique_lock<std::mutex>& lock) {
   Goal goal = *std::exchange(goal_, std::nullopt);
+  sooner_ = false;
   if (!line_.hasBranch(goal.branch)) goal.branch = line_.branch();
   if (const long back = std::exchange(goal.back, 0); back > 0)
     goal.frame = (goal.frame ? *goal.frame : line_.frameAt(goal.branch, goal.time)) - back;

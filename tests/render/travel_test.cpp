@@ -1,5 +1,6 @@
 // The simulation on its way to another time: what is asked for meanwhile, and what goes wrong.
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
@@ -35,14 +36,18 @@ class Travel : public TimeLineTest {
  protected:
   ~Travel() override { Gate::closed = Gate::throws = false; }
 
-  /// Sets out, and stays in the first frame on the way until the gate is open.
-  void setOut(int branch, double time) {
+  /// Asks for something that begins a frame, and stays in that until the gate is open.
+  void beginFrame(const std::function<void()>& ask) {
     Gate::closed = true;
     const long before = Gate::begun;
-    simulation_->goTo(branch, time);
+    ask();
     for (int k = 0; k < 60000 && Gate::begun == before; ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_GT(Gate::begun, before);
+  }
+  /// The same with the first frame on the way.
+  void setOut(int branch, double time) {
+    beginFrame([&] { simulation_->goTo(branch, time); });
   }
   void openGateAndArrive() {
     Gate::closed = false;
@@ -111,6 +116,22 @@ TEST_F(Travel, SettingsThatAreAskedForOnTheWayStayThoseOfThePanel) {
   expectPanelIsInForce();
 }
 
+TEST_F(Travel, WhatIsAskedForInTheFrameBeforeItHasItsOrder) {
+  for (const bool settingsFirst : {true, false}) {
+    ASSERT_NO_FATAL_FAILURE(openTwoBranches());
+    panel_.solver.tolerance = 0.03;
+    ASSERT_NO_FATAL_FAILURE(beginFrame([&] { simulation_->step(); }));
+    if (settingsFirst) simulation_->apply(panel_);
+    simulation_->goTo(1, 50 * 0.005);
+    if (!settingsFirst) simulation_->apply(panel_);
+    openGateAndArrive();
+    EXPECT_EQ(frame(), 50);
+    EXPECT_EQ(simulation_->status().line.branch, settingsFirst ? 1 : 3);
+    expectPanelIsInForce();
+    EXPECT_EQ(panel_.boundary.handling, settingsFirst ? BoundaryHandling::gamma : BoundaryHandling::none);
+  }
+}
+
 TEST_F(Travel, ASliderOnTheWayIsOfTheBranchThatItGoesTo) {
   ASSERT_NO_FATAL_FAILURE(openTwoBranches());
   ASSERT_NO_FATAL_FAILURE(setOut(1, 50 * 0.005));
@@ -172,7 +193,7 @@ TEST_F(Travel, AThrowOnTheWayLeavesThePanelWithWhatIsInForce) {
   panel_.solver.tolerance = 0.03;
   simulation_->apply(panel_);
   arrive();
-  EXPECT_EQ(simulation_->status().line.branches.size(), 2U) << "none begins in the midst of a frame";
+  EXPECT_EQ(simulation_->status().line.branch, 1) << "none begins in the midst of a frame";
   simulation_->reset();
   arrive();
   expectPanelIsInForce();
