@@ -7,20 +7,22 @@
 //   v = v* - grad phi, phi >= 0                       (incompressible SPH, Cummins & Rudman 1999)
 //
 //   sum_j F_ij (phi_i - phi_j) + s_i phi_i
-//     = t_i (m/rho0) sum_j B_i grad W_ij . (v*_i - v*_j)   compression by the neighbours
-//     - 2 rho_i/rho0 grad gamma_i . (v*_i - v_wall)        and by the wall
-//     + gamma_i min(rho_i/rho0 - 1, 0) / T                 room that less dense fluid has
+//     = t_i (m/rho0) sum_j B_i grad W_ij . (v*_i - v*_j)              compression by the neighbours
+//     - 2 rho_i/rho0 grad gamma_i . (v*_i - e h/2 L_i n_i - v_wall)   and by the wall
+//     + gamma_i min(rho_i/rho0 - 1, 0) / T                            room that less dense fluid has
 //   F_ij = -2 (m/rho0) W'(r_ij) / r_ij
 //
 //   grad phi_i = B_i (m/rho0) sum_j (phi_j - phi_i) grad W_ij
 //   B_i^-1 = -(m/rho0) sum_j grad W_ij (x_i - x_j)^T, t_i a third of its trace
 //
 // Both are exact for what is linear in space. Without B a packing that a flow has stretched reads compression
-// where there is none: it resists shear as a solid does, and gives energy back when it yields. Beside walls,
-// and fading towards the surface, the compression is the plain sum of pairs, with B = 1 and t = 1: there one
-// side is missing from B, which the wall's term or the surface stands for. Room closes in the time T
-// rather than in a step: what a step takes of it at once comes back as a push in the next, and water at rest
-// trembles. T is half the time in which a particle falls by its spacing, and not less than a step.
+// where there is none: it resists shear as a solid does, and gives energy back when it yields. The plain sum
+// of pairs, B = 1 and t = 1, stays towards the surface, where one side is missing and B grows. Beside a plane
+// the plain sum of a continuum reads what a strain L moves along the normal n, -e h grad gamma . L n, which B
+// leaves out: half of what the velocity changes on the way e h to the wall puts it back, e being what
+// gamma(e) says. Room closes in the time T rather than in a step: what a step takes of it at once comes back
+// as a push in the next, and water at rest trembles. T is half the time in which a particle falls by its
+// spacing, and not less than a step.
 //
 // The wall is in the divergence alone: by Gauss's theorem the kernel's missing part is a flux through it, and
 // the velocity there is the wall's, so that the same flux is missing from the Laplacian; twice, for F_ij is
@@ -118,19 +120,27 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     const float toMoment = -slope * scale.inverseSquare;
     const InverseMoment inverse(toMoment * diagonal.xyz(), toMoment * rest.xyz());
     float compression = slope * flow.xyz().sum();
-    const bool besideWall = state.wallSlot[i] != FluidState::kNoWall;
-    if (inverse.sound && !besideWall) {
+    if (inverse.sound) {
       const float third = toMoment * diagonal.xyz().sum() / 3;
       const float exact = third * slope * inverse.contract(flow.xyz(), flowRest.xyz());
       compression += ProjectionBuffers::inside(density) * (exact - compression);
     }
     float source = compression + toRoom * gamma * std::min(density - 1, 0.0F);
     Vec3f missing = slope * scale.inverseSupport * sums.xyz();
-    if (besideWall) {
+    out.image[i] = 0;
+    if (state.wallSlot[i] != FluidState::kNoWall) {
       const Vec3f wall = (added ? 1 : density) * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
       const Vec3f relative = own - state.boundary.wallVelocity(positions[i].xyz());
       source -= 2 * support * wall.dot(relative);
       missing -= wall;
+      if (const float length = wall.norm(); inverse.sound && length > 0) {
+        const Vec3f normal = wall / length, along = inverse.times(normal);
+        const Vec3f mixed(along.x() * normal.y() + along.y() * normal.x(),
+                          along.x() * normal.z() + along.z() * normal.x(),
+                          along.y() * normal.z() + along.z() * normal.y());
+        const float strain = along.cwiseProduct(normal).dot(flow.xyz()) + 0.5F * mixed.dot(flowRest.xyz());
+        out.image[i] = ProjectionBuffers::inside(density) * length * -slope * strain;
+      }
     }
     state.density[i] = density;
     out.residual[i] = source;
@@ -228,27 +238,23 @@ HWY_EXPORT(pushProjectionOfRange);
 
 namespace {
 
-/// 2 / e over the density, faded out inside: what `missing` is multiplied by. A table from 0 to the density
-/// of rest.
-class SurfaceShare {
+/// e over gamma(e): how far from a plane, in support radii, that share of the kernel is left. A table.
+class PlaneDistance {
  public:
-  SurfaceShare(KernelType kernel, float supportRatio) {
-    const float nearest = 0.25F / supportRatio;  // a quarter of a spacing below the surface
+  explicit PlaneDistance(KernelType kernel) {
     for (std::size_t k = 0; k < values_.size(); ++k) {
-      const float density = static_cast<float>(k) / static_cast<float>(values_.size() - 1);
-      const float outside = 1 - ProjectionBuffers::inside(density);
-      if (outside == 0) break;
-      float low = nearest, high = 1;  // gamma grows with e
+      const float share = static_cast<float>(k) / static_cast<float>(values_.size() - 1);
+      float low = 0, high = 1;  // gamma grows with e
       for (int halving = 0; halving < 24; ++halving) {
         const float middle = 0.5F * (low + high);
-        (withKernel(kernel, [&](auto shape) { return shape.planeGamma(middle); }) < density ? low : high) =
+        (withKernel(kernel, [&](auto shape) { return shape.planeGamma(middle); }) < share ? low : high) =
             middle;
       }
-      values_[k] = outside * 2 / high;
+      values_[k] = high;
     }
   }
-  float operator()(float density) const {
-    const float at = std::clamp(density, 0.0F, 1.0F) * static_cast<float>(values_.size() - 1);
+  float operator()(float share) const {
+    const float at = std::clamp(share, 0.0F, 1.0F) * static_cast<float>(values_.size() - 1);
     const auto k = std::min(static_cast<std::size_t>(at), values_.size() - 2);
     return values_[k] + (at - static_cast<float>(k)) * (values_[k + 1] - values_[k]);
   }
@@ -372,14 +378,18 @@ void stages::projectVelocities(StepState& state) {
   state.previous[n] = Float4();
   std::copy(state.particles.velocity.begin(), state.particles.velocity.end(), state.previous.begin());
   const auto measure = HWY_DYNAMIC_DISPATCH(measureProjectionOfRange);
-  const SurfaceShare surface(state.parameters.kernel, static_cast<float>(state.parameters.supportRatio));
+  const PlaneDistance distance(state.parameters.kernel);
+  const float nearest = 0.25F * state.spacing / state.supportRadius;
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     measure(state, begin, end);
     for (std::size_t i = begin; i < end; ++i) {
+      if (buffers.image[i] != 0) buffers.residual[i] += distance(state.gamma[i]) * buffers.image[i];
       // A lone particle has no neighbours to make a diagonal of, and no pressure.
       constexpr float kLeast = 1e-6F;
-      buffers.diagonal[i] =
-          std::max(buffers.diagonal[i], kLeast) + buffers.missing[i] * surface(state.density[i]);
+      buffers.diagonal[i] = std::max(buffers.diagonal[i], kLeast);
+      if (const float outside = 1 - ProjectionBuffers::inside(state.density[i]); outside > 0)
+        buffers.diagonal[i] +=
+            buffers.missing[i] * outside * 2 / std::max(distance(state.density[i]), nearest);
     }
   });
   PotentialSolve(state).run();
