@@ -18,7 +18,7 @@
 // Both are exact for what is linear in space. Without B a packing that a flow has stretched reads compression
 // where there is none: it resists shear as a solid does, and gives energy back when it yields. The plain sum
 // of pairs, B = 1 and t = 1, stays towards the surface, where one side is missing and B grows. Beside a plane
-// the plain sum of a continuum reads what a strain L moves along the normal n, -e h grad gamma . L n, which B
+// the plain sum of a continuum reads what a strain L moves along the normal n, e h grad gamma . L n, which B
 // leaves out: half of what the velocity changes on the way e h to the wall puts it back, e being what
 // gamma(e) says. Room closes in the time T rather than in a step: what a step takes of it at once comes back
 // as a push in the next, and water at rest trembles. T is half the time in which a particle falls by its
