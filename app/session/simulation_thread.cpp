@@ -280,7 +280,7 @@ void SimulationThread::applySettings(std::unique_lock<std::mutex>& lock) {
   try {
     const Settings before = simulation_->settings();
     // A change of the camera or of a name in the scene's text comes with the same settings.
-    if (settings && !changesBetween(simulation_->scene(), before, *settings).empty()) {
+    if (settings && !changesBetween(before, *settings).empty()) {
       simulation_->apply(*settings);
       // From a state that it has stopped in, perhaps between two frames, no branch begins.
       if (!stopped || simulation_->frame() >= line_.lastFrame(line_.branch())) {

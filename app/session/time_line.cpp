@@ -10,8 +10,9 @@
 namespace migiwa {
 namespace {
 
-Scene withSettings(const Scene& scene, const Settings& settings) {
-  Scene result = scene;
+/// A scene of nothing but settings.
+Scene sceneOf(const Settings& settings) {
+  Scene result;
   result.solver = settings.solver;
   result.boundary = settings.boundary;
   result.effects = settings.effects;
@@ -20,7 +21,7 @@ Scene withSettings(const Scene& scene, const Settings& settings) {
 
 /// What the settings were changed to, such as "/solver/tolerance=0.01".
 std::string nameOf(const Simulation& simulation, const Settings& before) {
-  const std::vector<std::string> changes = changesBetween(simulation.scene(), before, simulation.settings());
+  const std::vector<std::string> changes = changesBetween(before, simulation.settings());
   if (changes.empty()) return "the same settings";
   if (changes.size() == 1) return changes.front();
   return changes.front() + " and " + std::to_string(changes.size() - 1) + " more";
@@ -28,8 +29,8 @@ std::string nameOf(const Simulation& simulation, const Settings& before) {
 
 }  // namespace
 
-std::vector<std::string> changesBetween(const Scene& scene, const Settings& before, const Settings& now) {
-  return changesBetween(withSettings(scene, before), withSettings(scene, now));
+std::vector<std::string> changesBetween(const Settings& before, const Settings& now) {
+  return changesBetween(sceneOf(before), sceneOf(now));
 }
 
 void TimeLine::begin(Simulation& simulation) {

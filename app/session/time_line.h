@@ -15,8 +15,8 @@
 
 namespace migiwa {
 
-/// Where two settings of a scene differ, as changesBetween() says it of two scenes; empty: nowhere.
-std::vector<std::string> changesBetween(const Scene& scene, const Settings& before, const Settings& now);
+/// Where settings differ, as changesBetween() says it of two scenes; empty: nowhere.
+std::vector<std::string> changesBetween(const Settings& before, const Settings& now);
 
 class TimeLine {
  public:

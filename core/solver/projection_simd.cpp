@@ -241,6 +241,18 @@ namespace {
 /// e over gamma(e): how far from a plane, in support radii, that share of the kernel is left. A table.
 class PlaneDistance {
  public:
+  /// For one of the kernels whose own gradient moves particles; made once.
+  static const PlaneDistance& of(KernelType kernel) {
+    static const PlaneDistance ofSpline(KernelType::cubicSpline), ofWendland(KernelType::wendlandC2);
+    return kernel == KernelType::cubicSpline ? ofSpline : ofWendland;
+  }
+  float operator()(float share) const {
+    const float at = std::clamp(share, 0.0F, 1.0F) * static_cast<float>(values_.size() - 1);
+    const auto k = std::min(static_cast<std::size_t>(at), values_.size() - 2);
+    return values_[k] + (at - static_cast<float>(k)) * (values_[k + 1] - values_[k]);
+  }
+
+ private:
   explicit PlaneDistance(KernelType kernel) {
     for (std::size_t k = 0; k < values_.size(); ++k) {
       const float share = static_cast<float>(k) / static_cast<float>(values_.size() - 1);
@@ -253,13 +265,7 @@ class PlaneDistance {
       values_[k] = high;
     }
   }
-  float operator()(float share) const {
-    const float at = std::clamp(share, 0.0F, 1.0F) * static_cast<float>(values_.size() - 1);
-    const auto k = std::min(static_cast<std::size_t>(at), values_.size() - 2);
-    return values_[k] + (at - static_cast<float>(k)) * (values_[k + 1] - values_[k]);
-  }
 
- private:
   std::array<float, 257> values_{};
 };
 
@@ -378,7 +384,7 @@ void stages::projectVelocities(StepState& state) {
   state.previous[n] = Float4();
   std::copy(state.particles.velocity.begin(), state.particles.velocity.end(), state.previous.begin());
   const auto measure = HWY_DYNAMIC_DISPATCH(measureProjectionOfRange);
-  const PlaneDistance distance(state.parameters.kernel);
+  const PlaneDistance& distance = PlaneDistance::of(state.parameters.kernel);
   const float nearest = 0.25F * state.spacing / state.supportRadius;
   parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
     measure(state, begin, end);
