@@ -1,6 +1,7 @@
 // The lists, several candidates at a time: squared distances of a run of particles that are neighbours in
 // memory, and those within the radius stored without gaps.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "core/sph/neighbours.h"
@@ -15,6 +16,18 @@ struct SortedCoordinates {
   const float *x, *y, *z;
   std::uint32_t ghost;  ///< offset of the particle that fills up the lists
 };
+
+/// For each set of eight lanes, which lane comes k-th when those of the set come first, in bits 4k.
+inline constexpr auto kLanesOfSet = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t set = 0; set < table.size(); ++set) {
+    std::uint32_t place = 0;
+    for (const bool listed : {true, false})
+      for (std::uint32_t lane = 0; lane < 8; ++lane)
+        if (((set >> lane & 1U) != 0) == listed) table[set] |= lane << (4 * place++);
+  }
+  return table;
+}();
 
 /// The particles of the cells around one cell, one after the other, with their offsets.
 struct Candidates {
@@ -59,6 +72,26 @@ HWY_INLINE std::size_t gatherCandidates(const SortedCoordinates& sorted, const C
   return count;
 }
 
+using Offsets = hn::RebindToUnsigned<Group>;
+
+/// Stores those of the offsets that are listed, without gaps, and beyond them anything. Returns their number.
+HWY_INLINE std::size_t storeListed(hn::Vec<Offsets> offsets, hn::Mask<Offsets> listed, std::uint32_t* out) {
+  const Offsets d;
+#if HWY_TARGET == HWY_AVX2
+  // Highway's own has its table on the stack, where GCC copies it for every vector: four fifths of a search.
+  alignas(32) static constexpr std::uint32_t kShifts[] = {0, 4, 8, 12, 16, 20, 24, 28};
+  std::uint8_t bits[8];
+  hn::StoreMaskBits(d, listed, bits);
+  const auto lanes = hn::Shr(hn::Set(d, kLanesOfSet[bits[0]]), hn::Load(d, kShifts));
+  const auto first = hn::IndicesFromVec(d, hn::And(lanes, hn::Set(d, 7U)));
+  hn::StoreU(hn::TableLookupLanes(offsets, first), d, out);
+  return hwy::PopCount(bits[0]);
+#else
+  hn::StoreU(hn::Compress(offsets, listed), d, out);
+  return hn::CountTrue(d, listed);
+#endif
+}
+
 /// Appends to `out` the offsets of the candidates within the radius of the particle, the particle's own left
 /// out. Writes up to one vector beyond the end. Returns the new end.
 HWY_INLINE std::uint32_t* appendNeighbours(const Candidates& candidates, std::size_t count, const Float4& p,
@@ -79,8 +112,7 @@ HWY_INLINE std::uint32_t* appendNeighbours(const Candidates& candidates, std::si
     const auto offset = hn::LoadU(du, offsets + k);
     const auto near = hn::RebindMask(du, hn::Lt(squared, reach));
     const auto listed = hn::AndNot(hn::Eq(offset, own), near);
-    hn::StoreU(hn::Compress(offset, listed), du, out);
-    out += hn::CountTrue(du, listed);
+    out += storeListed(offset, listed, out);
   }
   return out;
 }
