@@ -13,6 +13,7 @@
 // stable for any time step. Deviation: the rest density in place of rho_j makes the pairs symmetric, so
 // momentum is conserved exactly. Walls do not hold the fluid: it slips along them.
 #include <cmath>
+#include <memory>
 
 #include "core/effects/effects.h"
 #include "core/solver/state.h"
@@ -28,9 +29,10 @@
 #define MIGIWA_VISCOSITY_TYPES
 namespace migiwa {
 
-/// The rows of velocity gradients, a particle each, with the ghost's.
-struct AffineRows {
-  Float4 *x, *y, *z;
+/// What affine XSPH gathers of a neighbour, in one cache line.
+struct alignas(64) AffineMotion {
+  Float4 place;    ///< (m)
+  Float4 x, y, z;  ///< rows of half the velocity gradient (1/s), the velocity in w (m/s)
 };
 
 /// Sums over neighbours: the rows of (v_i - v_j) grad W^T, the moment's diagonal in w; the moment's rest.
@@ -77,9 +79,9 @@ void smoothRange(StepState& state, const Float4* before, float scale, std::size_
            addSums(state, before, scale * KernelVectors<Kernel>::kValue));
 }
 
-/// The rows of the velocity gradient L (1/s) of the particles; `before`: the velocities, with the ghost's.
+/// The motion of the particles; `before`: the velocities, with the ghost's.
 template <class Kernel>
-void gradientRange(StepState& state, const Float4* before, const AffineRows& rows, std::size_t begin,
+void gradientRange(StepState& state, const Float4* before, AffineMotion* motions, std::size_t begin,
                    std::size_t end) {
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const PairScale pairScale(state);
@@ -94,17 +96,26 @@ void gradientRange(StepState& state, const Float4* before, const AffineRows& row
     PairVector yz = hn::Zero(d), zx = hn::Zero(d), zy = hn::Zero(d), zz = hn::Zero(d);
     PairVector mxx = hn::Zero(d), myy = hn::Zero(d), mzz = hn::Zero(d);
     PairVector mxy = hn::Zero(d), mxz = hn::Zero(d), myz = hn::Zero(d);
-    for (std::size_t k = 0; k < list.size(); k += kPairs) {
-      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
-      const PairVector push = Pair::push(d, distances(d, pair.squared));
-      const Components others = loadComponents(before, &list[k]);
-      const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
-      const PairVector ux = hn::Sub(vx, others.x), uy = hn::Sub(vy, others.y), uz = hn::Sub(vz, others.z);
-      xx = hn::MulAdd(ux, x, xx), xy = hn::MulAdd(ux, y, xy), xz = hn::MulAdd(ux, z, xz);
-      yx = hn::MulAdd(uy, x, yx), yy = hn::MulAdd(uy, y, yy), yz = hn::MulAdd(uy, z, yz);
-      zx = hn::MulAdd(uz, x, zx), zy = hn::MulAdd(uz, y, zy), zz = hn::MulAdd(uz, z, zz);
-      mxx = hn::MulAdd(x, pair.x, mxx), myy = hn::MulAdd(y, pair.y, myy), mzz = hn::MulAdd(z, pair.z, mzz);
-      mxy = hn::MulAdd(x, pair.y, mxy), mxz = hn::MulAdd(x, pair.z, mxz), myz = hn::MulAdd(y, pair.z, myz);
+    for (std::size_t first = 0; first < list.size(); first += PairBlock::kMost) {
+      const std::size_t last = HWY_MIN(first + PairBlock::kMost, list.size());
+      PairBlock block;
+      for (std::size_t k = first; k < last; k += kPairs) {
+        const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+        const PairVector push = Pair::push(d, distances(d, pair.squared));
+        const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
+        block.store(k - first, x, y, z);
+        mxx = hn::MulAdd(x, pair.x, mxx), myy = hn::MulAdd(y, pair.y, myy), mzz = hn::MulAdd(z, pair.z, mzz);
+        mxy = hn::MulAdd(x, pair.y, mxy), mxz = hn::MulAdd(x, pair.z, mxz), myz = hn::MulAdd(y, pair.z, myz);
+      }
+      for (std::size_t k = first; k < last; k += kPairs) {
+        const Components others = loadComponents(before, &list[k]);
+        const PairVector x = hn::Load(d, &block.x[k - first]), y = hn::Load(d, &block.y[k - first]);
+        const PairVector z = hn::Load(d, &block.z[k - first]);
+        const PairVector ux = hn::Sub(vx, others.x), uy = hn::Sub(vy, others.y), uz = hn::Sub(vz, others.z);
+        xx = hn::MulAdd(ux, x, xx), xy = hn::MulAdd(ux, y, xy), xz = hn::MulAdd(ux, z, xz);
+        yx = hn::MulAdd(uy, x, yx), yy = hn::MulAdd(uy, y, yy), yz = hn::MulAdd(uy, z, yz);
+        zx = hn::MulAdd(uz, x, zx), zy = hn::MulAdd(uz, y, zy), zz = hn::MulAdd(uz, z, zz);
+      }
     }
     return GradientSums{sumLanes(xx, xy, xz, mxx), sumLanes(yx, yy, yz, myy), sumLanes(zx, zy, zz, mzz),
                         sumLanes(mxy, mxz, myz, hn::Zero(d))};
@@ -115,59 +126,70 @@ void gradientRange(StepState& state, const Float4* before, const AffineRows& row
       sums = sumOf(PartingCentre{PairCentre(positions[i], pairScale), pairScale, i}, i);
     const InverseMoment inverse(scale * Vec3f(sums.x.w, sums.y.w, sums.z.w), scale * sums.rest.xyz());
     // Of too few neighbours, in spray, nothing is known: plain XSPH.
-    rows.x[i] = Float4(Vec3f(scale * inverse.times(sums.x.xyz())));
-    rows.y[i] = Float4(Vec3f(scale * inverse.times(sums.y.xyz())));
-    rows.z[i] = Float4(Vec3f(scale * inverse.times(sums.z.xyz())));
+    const float half = 0.5F * scale;
+    const auto row = [&](const Float4& sum, float velocity) {
+      return Float4(Vec3f(half * inverse.times(sum.xyz())), velocity);
+    };
+    const Float4& velocity = before[i];
+    motions[i] = {positions[i], row(sums.x, velocity.x), row(sums.y, velocity.y), row(sums.z, velocity.z)};
   }
 }
 
-void velocityGradientOfRange(StepState& state, const Float4* before, const AffineRows& rows,
-                             std::size_t begin, std::size_t end) {
-  withKernel(state.parameters.kernel,
-             [&](auto kernel) HWY_ATTR { gradientRange<decltype(kernel)>(state, before, rows, begin, end); });
+void velocityGradientOfRange(StepState& state, const Float4* before, AffineMotion* motions, std::size_t begin,
+                             std::size_t end) {
+  withKernel(state.parameters.kernel, [&](auto kernel) HWY_ATTR {
+    gradientRange<decltype(kernel)>(state, before, motions, begin, end);
+  });
 }
 
-/// L offset, a row of it: `own` the particle's, `rows` the neighbours'.
-HWY_INLINE PairVector affinePart(const Float4& own, const Components& row, const PairOffsets& pair) {
-  const Pairs d;
-  const PairVector x = hn::Mul(hn::Add(row.x, hn::Set(d, own.x)), pair.x);
-  const PairVector xy = hn::MulAdd(hn::Add(row.y, hn::Set(d, own.y)), pair.y, x);
-  return hn::Mul(hn::Set(d, 0.5F), hn::MulAdd(hn::Add(row.z, hn::Set(d, own.z)), pair.z, xy));
+/// What the neighbours' affine motion leaves of a component of the velocity difference, but for the part of
+/// the particle's own gradient. An offset points from the neighbour to the particle.
+HWY_INLINE PairVector leftOf(const Components& row, const PairOffsets& pair, PairVector velocity) {
+  return hn::MulAdd(row.x, pair.x,
+                    hn::MulAdd(row.y, pair.y, hn::MulAdd(row.z, pair.z, hn::Sub(row.w, velocity))));
 }
 
 template <class Kernel>
-void smoothAffineRange(StepState& state, const Float4* before, const AffineRows& rows, float scale,
-                       std::size_t begin, std::size_t end) {
+void smoothAffineRange(StepState& state, const AffineMotion* motions, float scale, std::size_t begin,
+                       std::size_t end) {
+  constexpr std::size_t kEach = sizeof(AffineMotion) / sizeof(Float4);
   const PairScale pairScale(state);
-  const Float4* const positions = state.current.data();
+  const float toChange = scale * KernelVectors<Kernel>::kValue;
   const auto sumOf = [&](const auto& centre, std::size_t i) HWY_ATTR {
-    const Float4 velocity = before[i], rowX = rows.x[i], rowY = rows.y[i], rowZ = rows.z[i];
+    const AffineMotion& own = motions[i];
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
     const Pairs d;
-    const PairVector vx = hn::Set(d, velocity.x), vy = hn::Set(d, velocity.y), vz = hn::Set(d, velocity.z);
+    const PairVector vx = hn::Set(d, own.x.w), vy = hn::Set(d, own.y.w), vz = hn::Set(d, own.z.w);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+    PairVector wayX = hn::Zero(d), wayY = hn::Zero(d), wayZ = hn::Zero(d);
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
-      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+      const PairOffsets pair = centre.to(loadComponents<kEach>(&motions->place, &list[k]), &list[k]);
       const PairVector shape = KernelVectors<Kernel>::shape(d, distances(d, pair.squared));
-      const Components others = loadComponents(before, &list[k]);
-      // An offset points from the neighbour to the particle.
-      const PairVector ax = affinePart(rowX, loadComponents(rows.x, &list[k]), pair);
-      const PairVector ay = affinePart(rowY, loadComponents(rows.y, &list[k]), pair);
-      const PairVector az = affinePart(rowZ, loadComponents(rows.z, &list[k]), pair);
-      x = hn::MulAdd(shape, hn::Add(hn::Sub(others.x, vx), ax), x);
-      y = hn::MulAdd(shape, hn::Add(hn::Sub(others.y, vy), ay), y);
-      z = hn::MulAdd(shape, hn::Add(hn::Sub(others.z, vz), az), z);
+      const Components rowX = loadComponents<kEach>(&motions->x, &list[k]);
+      x = hn::MulAdd(shape, leftOf(rowX, pair, vx), x);
+      const Components rowY = loadComponents<kEach>(&motions->y, &list[k]);
+      y = hn::MulAdd(shape, leftOf(rowY, pair, vy), y);
+      const Components rowZ = loadComponents<kEach>(&motions->z, &list[k]);
+      z = hn::MulAdd(shape, leftOf(rowZ, pair, vz), z);
+      wayX = hn::MulAdd(shape, pair.x, wayX);
+      wayY = hn::MulAdd(shape, pair.y, wayY);
+      wayZ = hn::MulAdd(shape, pair.z, wayZ);
     }
-    return sumLanes(x, y, z, hn::Zero(d));
+    const Vec3f way = sumLanes(wayX, wayY, wayZ, hn::Zero(d)).xyz();
+    const Vec3f ofOwn(own.x.xyz().dot(way), own.y.xyz().dot(way), own.z.xyz().dot(way));
+    return Float4(Vec3f(sumLanes(x, y, z, hn::Zero(d)).xyz() + ofOwn));
   };
-  forPairs(positions, pairScale, begin, end, sumOf,
-           addSums(state, before, scale * KernelVectors<Kernel>::kValue));
+  const auto use = [&](std::size_t i, const Float4& sums) HWY_ATTR {
+    const Vec3f before(motions[i].x.w, motions[i].y.w, motions[i].z.w);
+    state.particles.velocity[i] = Float4(Vec3f(before + toChange * sums.xyz()));
+  };
+  forPairs(state.current.data(), pairScale, begin, end, sumOf, use);
 }
 
-void smoothAffineOfRange(StepState& state, const Float4* before, const AffineRows& rows, float scale,
-                         std::size_t begin, std::size_t end) {
+void smoothAffineOfRange(StepState& state, const AffineMotion* motions, float scale, std::size_t begin,
+                         std::size_t end) {
   withKernel(state.parameters.kernel, [&](auto kernel) HWY_ATTR {
-    smoothAffineRange<decltype(kernel)>(state, before, rows, scale, begin, end);
+    smoothAffineRange<decltype(kernel)>(state, motions, scale, begin, end);
   });
 }
 
@@ -311,7 +333,7 @@ class Viscosity final : public EffectOf<Viscosity> {
   }
 
   EffectStages stages() const override { return {.velocity = xsph_ > 0 || affine_ > 0 || kinematic_ > 0}; }
-  std::size_t buffers() const override { return affine_ > 0 ? 3 : kinematic_ > 0 ? 1 : 0; }
+  std::size_t buffers() const override { return affine_ > 0 || kinematic_ > 0 ? 1 : 0; }
 
   void changeVelocities(StepState& state, std::span<EffectBuffer> buffers) const override {
     if (xsph_ > 0) smooth(state);
@@ -354,20 +376,23 @@ class Viscosity final : public EffectOf<Viscosity> {
 
   void smoothAffine(StepState& state, std::span<EffectBuffer> buffers) const {
     const std::size_t n = state.particles.size();
-    for (EffectBuffer& row : buffers.first(3)) {
-      resizeTight(row, n + 1);
-      row[n] = Float4();
-    }
-    const AffineRows rows{buffers[0].data(), buffers[1].data(), buffers[2].data()};
+    constexpr std::size_t kEach = sizeof(AffineMotion) / sizeof(Float4);
+    EffectBuffer& memory = buffers[0];
+    resizeTight(memory, kEach * (n + 2));  // one more, for what is not aligned
+    void* start = memory.data();
+    std::size_t bytes = memory.size() * sizeof(Float4);
+    auto* const motions = static_cast<AffineMotion*>(
+        std::align(alignof(AffineMotion), (n + 1) * sizeof(AffineMotion), start, bytes));
+    motions[n] = {state.current[n], Float4(), Float4(), Float4()};
     const Float4* const before = copyVelocities(state);
     const auto gradient = HWY_DYNAMIC_DISPATCH(velocityGradientOfRange);
     const auto smoothed = HWY_DYNAMIC_DISPATCH(smoothAffineOfRange);
     parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-      gradient(state, before, rows, begin, end);
+      gradient(state, before, motions, begin, end);
     });
     const float scale = static_cast<float>(affine_) * state.lattice.massRatio;
     parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-      smoothed(state, before, rows, scale, begin, end);
+      smoothed(state, motions, scale, begin, end);
     });
   }
 

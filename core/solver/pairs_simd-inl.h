@@ -33,35 +33,39 @@ struct Components {
   PairVector x, y, z, w;
 };
 
-/// The float4 at an offset in bytes.
+/// The float4 at an offset in bytes, `kEach` float4 being a particle's.
+template <std::size_t kEach>
 HWY_INLINE const float* atOffset(const Float4* base, std::uint32_t offset) {
-  return reinterpret_cast<const float*>(reinterpret_cast<const char*>(base) + offset);
+  return reinterpret_cast<const float*>(reinterpret_cast<const char*>(base) + kEach * offset);
 }
 
 #if HWY_TARGET == HWY_SCALAR
+template <std::size_t kEach = 1>
 HWY_INLINE Components loadComponents(const Float4* base, const std::uint32_t* HWY_RESTRICT offsets) {
   const Pairs d;
-  const float* const at = atOffset(base, *offsets);
+  const float* const at = atOffset<kEach>(base, *offsets);
   return {hn::Set(d, at[0]), hn::Set(d, at[1]), hn::Set(d, at[2]), hn::Set(d, at[3])};
 }
 #else
 /// The k-th float4, and the one four further on where a vector holds eight floats.
+template <std::size_t kEach>
 HWY_INLINE PairVector loadBlocks(const Float4* base, const std::uint32_t* HWY_RESTRICT offsets,
                                  std::size_t k) {
   const hn::Full128<float> quad;
 #if HWY_MAX_BYTES == 16
-  return hn::Load(quad, atOffset(base, offsets[k]));
+  return hn::Load(quad, atOffset<kEach>(base, offsets[k]));
 #else
-  return hn::Combine(Pairs(), hn::Load(quad, atOffset(base, offsets[k + 4])),
-                     hn::Load(quad, atOffset(base, offsets[k])));
+  return hn::Combine(Pairs(), hn::Load(quad, atOffset<kEach>(base, offsets[k + 4])),
+                     hn::Load(quad, atOffset<kEach>(base, offsets[k])));
 #endif
 }
 
-/// Loads the float4 at the offsets from `base`.
+/// Loads the float4 at the offsets from `base`, where `kEach` of them are a particle's: the first of these.
+template <std::size_t kEach = 1>
 HWY_INLINE Components loadComponents(const Float4* base, const std::uint32_t* HWY_RESTRICT offsets) {
   const Pairs d;
-  const PairVector a = loadBlocks(base, offsets, 0), b = loadBlocks(base, offsets, 1);
-  const PairVector c = loadBlocks(base, offsets, 2), e = loadBlocks(base, offsets, 3);
+  const PairVector a = loadBlocks<kEach>(base, offsets, 0), b = loadBlocks<kEach>(base, offsets, 1);
+  const PairVector c = loadBlocks<kEach>(base, offsets, 2), e = loadBlocks<kEach>(base, offsets, 3);
   const PairVector xy02 = hn::InterleaveLower(d, a, c), xy13 = hn::InterleaveLower(d, b, e);
   const PairVector zw02 = hn::InterleaveUpper(d, a, c), zw13 = hn::InterleaveUpper(d, b, e);
   return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
@@ -131,6 +135,18 @@ struct PartingCentre {
       lanes[3][k] = kCoincident * kCoincident;
     }
     return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]), hn::LoadU(d, lanes[3])};
+  }
+};
+
+/// What a first loop over some of a particle's neighbours leaves to a second: more sums than there are
+/// registers for go through memory with every pair.
+struct PairBlock {
+  static constexpr std::size_t kMost = 16 * NeighbourLists::kGroup;
+  alignas(32) float x[kMost], y[kMost], z[kMost];  ///< gradients of the kernel, without its constants (m)
+
+  HWY_INLINE void store(std::size_t k, PairVector ax, PairVector ay, PairVector az) {
+    const Pairs d;
+    hn::Store(ax, d, &x[k]), hn::Store(ay, d, &y[k]), hn::Store(az, d, &z[k]);
   }
 };
 

@@ -50,6 +50,19 @@
 
 #include "core/solver/pairs_simd-inl.h"
 
+#ifndef MIGIWA_PROJECTION_TYPES
+#define MIGIWA_PROJECTION_TYPES
+namespace migiwa {
+
+/// Of what is left of the equation, in the unit of the solve.
+struct PotentialSums {
+  double square = 0;  ///< over the diagonal
+  double magnitude = 0;
+};
+
+}  // namespace migiwa
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
@@ -67,8 +80,9 @@ inline float roomRate(const StepState& state) {
   return gravity > 0 ? std::min(once, std::sqrt(0.5F * gravity / state.spacing) / kFalls) : once;
 }
 
-/// Density, moment, divergence and diagonal, without the surface's share. state.previous holds the
-/// velocities, with the ghost's.
+/// Density, moment, divergence and diagonal, without the surface's share, what the potential of the step
+/// before adds to the neighbours' side of the equation, and the F of the pairs, which stay with the lists.
+/// state.previous holds the velocities and, in w, that potential, with the ghost's.
 template <class Kernel>
 void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   using Shape = KernelVectors<Kernel>;
@@ -79,39 +93,55 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   ProjectionBuffers& out = state.projection;
   const float slope = state.lattice.massRatio * Shape::kSlope;
   const float support = state.supportRadius, toRoom = support * support * roomRate(state);
+  const PairVector toFactor = hn::Set(d, -2 * slope);
   const bool added = state.addsWallDensity();
+  state.neighbours.makePairValues(begin / kChunk);
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(positions[i], scale);
     const Vec3f own = velocities[i].xyz();
     const PairVector ux = hn::Set(d, own.x()), uy = hn::Set(d, own.y()), uz = hn::Set(d, own.z());
-    PairVector covered = hn::Zero(d), pushes = hn::Zero(d);
+    PairVector covered = hn::Zero(d);
     PairVector sumX = hn::Zero(d), sumY = hn::Zero(d), sumZ = hn::Zero(d);
     PairVector xx = hn::Zero(d), yy = hn::Zero(d), zz = hn::Zero(d);
     PairVector xy = hn::Zero(d), xz = hn::Zero(d), yz = hn::Zero(d);
     // grad W (v_i - v_j)^T, its diagonal and what lies beside it, both sides added.
     PairVector flowX = hn::Zero(d), flowY = hn::Zero(d), flowZ = hn::Zero(d);
     PairVector flowXy = hn::Zero(d), flowXz = hn::Zero(d), flowYz = hn::Zero(d);
+    PairVector row = hn::Zero(d), potentials = hn::Zero(d);
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    float* const HWY_RESTRICT factors = state.neighbours.pairValues(i);
     prefetchLists(list.data());
-    for (std::size_t k = 0; k < list.size(); k += kPairs) {
-      const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
-      const Components v = loadComponents(velocities, &list[k]);
-      const Distances<PairVector> r = distances(d, pair.squared);
-      covered = hn::Add(covered, Shape::shape(d, r));
-      const PairVector push = Shape::push(d, r);
-      pushes = hn::Add(pushes, push);
-      const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
-      sumX = hn::Add(sumX, x), sumY = hn::Add(sumY, y), sumZ = hn::Add(sumZ, z);
-      const PairVector vx = hn::Sub(ux, v.x), vy = hn::Sub(uy, v.y), vz = hn::Sub(uz, v.z);
-      flowX = hn::MulAdd(x, vx, flowX), flowY = hn::MulAdd(y, vy, flowY), flowZ = hn::MulAdd(z, vz, flowZ);
-      flowXy = hn::MulAdd(x, vy, hn::MulAdd(y, vx, flowXy));
-      flowXz = hn::MulAdd(x, vz, hn::MulAdd(z, vx, flowXz));
-      flowYz = hn::MulAdd(y, vz, hn::MulAdd(z, vy, flowYz));
-      xx = hn::MulAdd(x, pair.x, xx), yy = hn::MulAdd(y, pair.y, yy), zz = hn::MulAdd(z, pair.z, zz);
-      xy = hn::MulAdd(x, pair.y, xy), xz = hn::MulAdd(x, pair.z, xz), yz = hn::MulAdd(y, pair.z, yz);
+    for (std::size_t first = 0; first < list.size(); first += PairBlock::kMost) {
+      const std::size_t last = HWY_MIN(first + PairBlock::kMost, list.size());
+      PairBlock block;
+      for (std::size_t k = first; k < last; k += kPairs) {
+        const PairOffsets pair = centre.to(loadComponents(positions, &list[k]), &list[k]);
+        const Distances<PairVector> r = distances(d, pair.squared);
+        covered = hn::Add(covered, Shape::shape(d, r));
+        const PairVector push = Shape::push(d, r);
+        hn::Store(hn::Mul(toFactor, push), d, &factors[k]);
+        const PairVector x = hn::Mul(push, pair.x), y = hn::Mul(push, pair.y), z = hn::Mul(push, pair.z);
+        block.store(k - first, x, y, z);
+        sumX = hn::Add(sumX, x), sumY = hn::Add(sumY, y), sumZ = hn::Add(sumZ, z);
+        xx = hn::MulAdd(x, pair.x, xx), yy = hn::MulAdd(y, pair.y, yy), zz = hn::MulAdd(z, pair.z, zz);
+        xy = hn::MulAdd(x, pair.y, xy), xz = hn::MulAdd(x, pair.z, xz), yz = hn::MulAdd(y, pair.z, yz);
+      }
+      for (std::size_t k = first; k < last; k += kPairs) {
+        const Components v = loadComponents(velocities, &list[k]);
+        const PairVector factor = hn::Load(d, &factors[k]);
+        row = hn::Add(row, factor);
+        potentials = hn::MulAdd(factor, v.w, potentials);
+        const PairVector x = hn::Load(d, &block.x[k - first]), y = hn::Load(d, &block.y[k - first]);
+        const PairVector z = hn::Load(d, &block.z[k - first]);
+        const PairVector vx = hn::Sub(ux, v.x), vy = hn::Sub(uy, v.y), vz = hn::Sub(uz, v.z);
+        flowX = hn::MulAdd(x, vx, flowX), flowY = hn::MulAdd(y, vy, flowY), flowZ = hn::MulAdd(z, vz, flowZ);
+        flowXy = hn::MulAdd(x, vy, hn::MulAdd(y, vx, flowXy));
+        flowXz = hn::MulAdd(x, vz, hn::MulAdd(z, vx, flowXz));
+        flowYz = hn::MulAdd(y, vz, hn::MulAdd(z, vy, flowYz));
+      }
     }
-    const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, pushes);
-    const Float4 flow = sumLanes(flowX, flowY, flowZ, hn::Zero(d));
+    const Float4 diagonal = sumLanes(xx, yy, zz, covered), rest = sumLanes(xy, xz, yz, row);
+    const Float4 flow = sumLanes(flowX, flowY, flowZ, potentials);
     const Float4 flowRest = sumLanes(flowXy, flowXz, flowYz, hn::Zero(d));
     const Float4 sums = sumLanes(sumX, sumY, sumZ, hn::Zero(d));
     const float gamma = state.gamma[i], resting = state.densityGamma(gamma);
@@ -127,7 +157,7 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     }
     float source = compression + toRoom * gamma * std::min(density - 1, 0.0F);
     Vec3f missing = slope * scale.inverseSupport * sums.xyz();
-    out.image[i] = 0;
+    float atWall = 0;
     if (state.wallSlot[i] != FluidState::kNoWall) {
       const Vec3f wall = (added ? 1 : density) * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
       const Vec3f relative = own - state.boundary.wallVelocity(positions[i].xyz());
@@ -139,12 +169,14 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
                           along.x() * normal.z() + along.z() * normal.x(),
                           along.y() * normal.z() + along.z() * normal.y());
         const float strain = along.cwiseProduct(normal).dot(flow.xyz()) + 0.5F * mixed.dot(flowRest.xyz());
-        out.image[i] = ProjectionBuffers::inside(density) * length * -slope * strain;
+        atWall = ProjectionBuffers::inside(density) * length * -slope * strain;
       }
     }
     state.density[i] = density;
     out.residual[i] = source;
-    out.diagonal[i] = -2 * slope * rest.w;
+    out.atWall[i] = atWall;
+    out.image[i] = -flow.w;
+    out.diagonal[i] = rest.w;
     out.missing[i] = missing.norm();
     out.inverse[i] = inverse;
   }
@@ -155,43 +187,67 @@ void measureProjectionOfRange(StepState& state, std::size_t begin, std::size_t e
                   [&](auto kernel) HWY_ATTR { measureRange<decltype(kernel)>(state, begin, end); });
 }
 
-/// image = the matrix times what the w of state.paired hold.
-template <class Kernel>
-void applyRange(StepState& state, std::size_t begin, std::size_t end) {
-  using Shape = KernelVectors<Kernel>;
+/// image = the matrix times what the w of state.paired hold, of the particles in the solve. Returns the
+/// product of the two, a sum over the particles, both over `unit` (m^2/s).
+float applyProjectionOfRange(StepState& state, float unit, std::size_t begin, std::size_t end) {
   const Pairs d;
-  const PairScale scale(state);
   const Float4* const others = state.paired.data();
   ProjectionBuffers& out = state.projection;
-  const float toMatrix = -2 * state.lattice.massRatio * Shape::kSlope;
   for (std::size_t i = begin; i < end; ++i) {
-    const PairCentre centre(others[i], scale);
+    out.image[i] = 0;
+    if (!out.active[i]) continue;
     PairVector sum = hn::Zero(d);
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const float* const HWY_RESTRICT factors = state.neighbours.pairValues(i);
     prefetchLists(list.data());
-    for (std::size_t k = 0; k < list.size(); k += kPairs) {
-      const Components neighbours = loadComponents(others, &list[k]);
-      const PairOffsets pair = centre.to(neighbours, &list[k]);
-      sum = hn::MulAdd(Shape::push(d, distances(d, pair.squared)), neighbours.w, sum);
-    }
-    out.image[i] = out.diagonal[i] * others[i].w - toMatrix * sumLanes(sum);
+    for (std::size_t k = 0; k < list.size(); k += kPairs)
+      sum = hn::MulAdd(hn::Load(d, &factors[k]), loadComponents(others, &list[k]).w, sum);
+    out.image[i] = out.diagonal[i] * others[i].w - sumLanes(sum);
   }
+  PairVector product = hn::Zero(d);
+  const PairVector inverseUnit = hn::Set(d, 1 / unit);
+  for (std::size_t i = begin; i < end; i += kPairs) {
+    const std::size_t count = HWY_MIN(kPairs, end - i);
+    const PairVector own = hn::Mul(inverseUnit, loadSome(&others[i], count).w);
+    product = hn::MulAdd(own, hn::Mul(inverseUnit, loadSome(&out.image[i], count)), product);
+  }
+  return sumLanes(product);
 }
 
-void applyProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
-  withOwnGradient(state.parameters.kernel,
-                  [&](auto kernel) HWY_ATTR { applyRange<decltype(kernel)>(state, begin, end); });
+/// A step of the conjugate gradients: `keep` of the direction before stays, `along` is how far it goes. The
+/// residual over the diagonal is in the w of state.paired. Returns the sums of what is left, over `unit`.
+PotentialSums stepProjectionOfRange(StepState& state, float unit, float keep, float along, std::size_t begin,
+                                    std::size_t end) {
+  const Pairs d;
+  ProjectionBuffers& b = state.projection;
+  const PairVector inverseUnit = hn::Set(d, 1 / unit), share = hn::Set(d, keep), far = hn::Set(d, along);
+  PairVector square = hn::Zero(d), magnitude = hn::Zero(d);
+  for (std::size_t i = begin; i < end; i += kPairs) {
+    const std::size_t count = HWY_MIN(kPairs, end - i);
+    Components paired = loadSome(&state.paired[i], count);
+    const PairVector direction = hn::MulAdd(share, loadSome(&b.direction[i], count), paired.w);
+    const PairVector image =
+        hn::MulAdd(share, loadSome(&b.directionImage[i], count), loadSome(&b.image[i], count));
+    const PairVector residual = hn::NegMulAdd(far, image, loadSome(&b.residual[i], count));
+    storeSome(direction, &b.direction[i], count), storeSome(image, &b.directionImage[i], count);
+    storeSome(hn::MulAdd(far, direction, loadSome(&b.potential[i], count)), &b.potential[i], count);
+    storeSome(residual, &b.residual[i], count);
+    paired.w = hn::Mul(residual, loadSome(&b.inverseDiagonal[i], count));
+    storeSome(paired, &state.paired[i], count);
+    const PairVector left = hn::Mul(inverseUnit, residual);
+    square = hn::MulAdd(left, hn::Mul(inverseUnit, paired.w), square);
+    magnitude = hn::Add(magnitude, hn::Abs(left));
+  }
+  return {sumLanes(square), sumLanes(magnitude)};
 }
 
 /// v -= grad phi, phi being what the w of state.paired hold.
-template <class Kernel>
-void pushRange(StepState& state, std::size_t begin, std::size_t end) {
-  using Shape = KernelVectors<Kernel>;
+void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
   const Pairs d;
   const PairScale scale(state);
   const Float4* const others = state.paired.data();
   const ProjectionBuffers& in = state.projection;
-  const float toGradient = state.lattice.massRatio * Shape::kSlope * scale.inverseSquare;
+  const float toGradient = -0.5F * scale.inverseSquare;
   const bool added = state.addsWallDensity();
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(others[i], scale);
@@ -201,11 +257,12 @@ void pushRange(StepState& state, std::size_t begin, std::size_t end) {
     // Either the difference to the particle's own, or the sum with it.
     const PairVector own = hn::Set(d, inverse.sound ? -phi : phi);
     const std::span<const std::uint32_t> list = state.neighbours.groups(i);
+    const float* const HWY_RESTRICT factors = state.neighbours.pairValues(i);
     prefetchLists(list.data());
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const Components neighbours = loadComponents(others, &list[k]);
       const PairOffsets pair = centre.to(neighbours, &list[k]);
-      const PairVector push = hn::Mul(hn::Add(neighbours.w, own), Shape::push(d, distances(d, pair.squared)));
+      const PairVector push = hn::Mul(hn::Add(neighbours.w, own), hn::Load(d, &factors[k]));
       x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
     }
     const Vec3f sum = toGradient * sumLanes(x, y, z, hn::Zero(d)).xyz();
@@ -221,11 +278,6 @@ void pushRange(StepState& state, std::size_t begin, std::size_t end) {
   }
 }
 
-void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
-  withOwnGradient(state.parameters.kernel,
-                  [&](auto kernel) HWY_ATTR { pushRange<decltype(kernel)>(state, begin, end); });
-}
-
 }  // namespace migiwa::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -234,6 +286,7 @@ namespace migiwa {
 
 HWY_EXPORT(measureProjectionOfRange);
 HWY_EXPORT(applyProjectionOfRange);
+HWY_EXPORT(stepProjectionOfRange);
 HWY_EXPORT(pushProjectionOfRange);
 
 namespace {
@@ -269,94 +322,64 @@ class PlaneDistance {
   std::array<float, 257> values_{};
 };
 
-/// Conjugate gradients for the potential.
+PotentialSums addPotentialSums(const PotentialSums& a, const PotentialSums& b) {
+  return {a.square + b.square, a.magnitude + b.magnitude};
+}
+
+/// Conjugate gradients for the potential, with the sums of an iteration in one place [CGe].
 class PotentialSolve {
  public:
-  explicit PotentialSolve(StepState& state) : state_(state), b_(state.projection) {}
+  /// `left`: what the potential of the step before leaves of the equation.
+  PotentialSolve(StepState& state, const PotentialSums& left)
+      : state_(state), unit_(residualUnit(state)), left_(left) {}
+
+  /// What a residual is of a divergence that closes all room in a step (m^2/s).
+  static float residualUnit(const StepState& state) {
+    return state.supportRadius * state.supportRadius / state.timeStep;
+  }
 
   void run() {
-    const std::size_t n = state_.particles.size();
     const SolverParameters& parameters = state_.parameters;
-    begin();
-    // What is left of the divergence, as the mean density error that it makes in a step.
-    const double toError =
-        static_cast<double>(state_.timeStep) /
-        (static_cast<double>(state_.supportRadius) * static_cast<double>(state_.supportRadius)) /
-        static_cast<double>(std::max<std::size_t>(n, 1));
-    Sums sums = precondition();
+    const auto mean = [&] {
+      return left_.magnitude / static_cast<double>(std::max<std::size_t>(state_.particles.size(), 1));
+    };
     constexpr double kLeft = 0.2;  // of the divergence that the pressure of the step before leaves
-    const double enough = std::max(parameters.divergenceTolerance, kLeft * sums.magnitude * toError);
+    const double enough = std::max(parameters.divergenceTolerance, kLeft * mean());
+    double along = 0, before = 0;
     state_.pressureIterations = 0;
-    while (state_.pressureIterations < parameters.maxPressureIterations && sums.square > 0 &&
-           sums.magnitude * toError > enough) {
-      apply();
-      const double curvature = parallelSum(state_.pool, state_.particles.size(), [&](std::size_t i) {
-        if (!b_.active[i]) b_.image[i] = 0;
-        return static_cast<double>(b_.image[i]) * static_cast<double>(state_.paired[i].w);
-      });
-      if (!(curvature > 0)) break;
-      const auto along = static_cast<float>(sums.square / curvature);
-      parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
-        b_.potential[i] += along * state_.paired[i].w;
-        b_.residual[i] -= along * b_.image[i];
-      });
-      const double before = sums.square;
-      sums = precondition();
-      const auto keep = static_cast<float>(sums.square / before);
-      parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
-        state_.paired[i].w = b_.residual[i] / b_.diagonal[i] + keep * state_.paired[i].w;
-      });
+    while (state_.pressureIterations < parameters.maxPressureIterations && left_.square > 0 &&
+           mean() > enough) {
+      const double keep = state_.pressureIterations > 0 ? left_.square / before : 0;
+      const double product = apply() - (along != 0 ? keep * left_.square / along : 0);
+      if (!(product > 0)) break;
+      along = left_.square / product;
+      before = left_.square;
+      step(static_cast<float>(keep), static_cast<float>(along));
       ++state_.pressureIterations;
     }
   }
 
  private:
-  struct Sums {
-    double square = 0;     ///< of the residual over the diagonal
-    double magnitude = 0;  ///< of the residual (m^2/s)
-  };
-
-  /// The residual of the pressure of the step before, and the first direction.
-  void begin() {
-    const float dt = state_.timeStep;
-    parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
-      b_.potential[i] = dt * state_.projectedPressure[i];
-      state_.paired[i] = Float4(state_.current[i].xyz(), b_.potential[i]);
-    });
-    apply();
-    parallelEach(state_.pool, state_.particles.size(), [&](std::size_t i) {
-      float& residual = b_.residual[i];
-      residual -= b_.image[i];
-      // Particles without pressure that do not come together have no part in the solve.
-      b_.active[i] = b_.potential[i] > 0 || residual > 0 ? 1 : 0;
-      if (!b_.active[i]) residual = 0;
-      state_.paired[i].w = residual / b_.diagonal[i];
-    });
-  }
-  void apply() {
+  double apply() {
     const auto ofRange = HWY_DYNAMIC_DISPATCH(applyProjectionOfRange);
-    parallelFor(state_.pool, state_.particles.size(),
-                [&](std::size_t begin, std::size_t end, std::size_t) { ofRange(state_, begin, end); });
-  }
-  Sums precondition() const {
     return parallelReduce(
-        state_.pool, state_.particles.size(), Sums{},
+        state_.pool, state_.particles.size(), 0.0,
         [&](std::size_t begin, std::size_t end) {
-          Sums part;
-          for (std::size_t i = begin; i < end; ++i) {
-            const auto residual = static_cast<double>(b_.residual[i]);
-            part.square += residual * residual / static_cast<double>(b_.diagonal[i]);
-            part.magnitude += std::abs(residual);
-          }
-          return part;
+          return static_cast<double>(ofRange(state_, unit_, begin, end));
         },
-        [](const Sums& a, const Sums& b) {
-          return Sums{a.square + b.square, a.magnitude + b.magnitude};
-        });
+        [](double a, double b) { return a + b; });
+  }
+  void step(float keep, float along) {
+    const auto ofRange = HWY_DYNAMIC_DISPATCH(stepProjectionOfRange);
+    left_ = parallelReduce(
+        state_.pool, state_.particles.size(), PotentialSums{},
+        [&](std::size_t begin, std::size_t end) { return ofRange(state_, unit_, keep, along, begin, end); },
+        addPotentialSums);
   }
 
   StepState& state_;
-  ProjectionBuffers& b_;
+  float unit_;
+  PotentialSums left_;
 };
 
 /// Work of the pressure on moving walls' account: its impulse on each particle times the wall's velocity.
@@ -371,35 +394,68 @@ double pressureWork(const StepState& state) {
   });
 }
 
-}  // namespace
-
-void stages::projectVelocities(StepState& state) {
+/// Memory, and what the passes over pairs gather: positions, velocities, the potential of the step before.
+void prepareProjection(StepState& state) {
   const std::size_t n = state.particles.size();
-  ProjectionBuffers& buffers = state.projection;
-  buffers.resize(n);
+  state.projection.resize(n);
   state.density.resize(n);
   resizeTight(state.previous, n + 1);
   resizeTight(state.paired, n + 1);
   state.paired[n] = Float4(state.neighbours.ghost().xyz());
   state.previous[n] = Float4();
-  std::copy(state.particles.velocity.begin(), state.particles.velocity.end(), state.previous.begin());
-  const auto measure = HWY_DYNAMIC_DISPATCH(measureProjectionOfRange);
+  parallelEach(state.pool, n, [&](std::size_t i) {
+    const float potential = state.timeStep * state.projectedPressure[i];
+    state.projection.potential[i] = potential;
+    state.previous[i] = Float4(state.particles.velocity[i].xyz(), potential);
+  });
+}
+
+/// The equation, and what the potential of the step before leaves of it.
+PotentialSums measureProjection(StepState& state) {
+  const auto ofRange = HWY_DYNAMIC_DISPATCH(measureProjectionOfRange);
   const PlaneDistance& distance = PlaneDistance::of(state.parameters.kernel);
   const float nearest = 0.25F * state.spacing / state.supportRadius;
-  parallelFor(state.pool, n, [&](std::size_t begin, std::size_t end, std::size_t) {
-    measure(state, begin, end);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (buffers.image[i] != 0) buffers.residual[i] += distance(state.gamma[i]) * buffers.image[i];
-      // A lone particle has no neighbours to make a diagonal of, and no pressure.
-      constexpr float kLeast = 1e-6F;
-      buffers.diagonal[i] = std::max(buffers.diagonal[i], kLeast);
-      if (const float outside = 1 - ProjectionBuffers::inside(state.density[i]); outside > 0)
-        buffers.diagonal[i] +=
-            buffers.missing[i] * outside * 2 / std::max(distance(state.density[i]), nearest);
-    }
-  });
-  PotentialSolve(state).run();
+  const double toUnit = 1 / static_cast<double>(PotentialSolve::residualUnit(state));
+  ProjectionBuffers& b = state.projection;
+  return parallelReduce(
+      state.pool, state.particles.size(), PotentialSums{},
+      [&](std::size_t begin, std::size_t end) {
+        PotentialSums sums;
+        ofRange(state, begin, end);
+        for (std::size_t i = begin; i < end; ++i) {
+          float residual = b.residual[i], diagonal = b.diagonal[i];
+          if (b.atWall[i] != 0) residual += distance(state.gamma[i]) * b.atWall[i];
+          // A lone particle has no neighbours to make a diagonal of, and no pressure.
+          constexpr float kLeast = 1e-6F;
+          diagonal = std::max(diagonal, kLeast);
+          if (const float outside = 1 - ProjectionBuffers::inside(state.density[i]); outside > 0)
+            diagonal += b.missing[i] * outside * 2 / std::max(distance(state.density[i]), nearest);
+          residual -= diagonal * b.potential[i] + b.image[i];
+          // Particles without pressure that do not come together have no part in the solve.
+          const bool active = b.potential[i] > 0 || residual > 0;
+          if (!active) residual = 0;
+          const float inverse = 1 / diagonal, start = residual * inverse;
+          b.active[i] = active ? 1 : 0;
+          b.residual[i] = residual, b.diagonal[i] = diagonal, b.inverseDiagonal[i] = inverse;
+          b.direction[i] = b.directionImage[i] = 0;
+          state.paired[i] = Float4(state.current[i].xyz(), start);
+          const double left = toUnit * static_cast<double>(residual);
+          sums.square += left * toUnit * static_cast<double>(start);
+          sums.magnitude += std::abs(left);
+        }
+        return sums;
+      },
+      addPotentialSums);
+}
+
+}  // namespace
+
+void stages::projectVelocities(StepState& state) {
+  const std::size_t n = state.particles.size();
+  prepareProjection(state);
+  PotentialSolve(state, measureProjection(state)).run();
   const float inverseStep = 1 / state.timeStep;
+  ProjectionBuffers& buffers = state.projection;
   parallelEach(state.pool, n, [&](std::size_t i) {
     const float potential = std::max(buffers.potential[i], 0.0F);
     buffers.potential[i] = state.paired[i].w = potential;

@@ -72,7 +72,9 @@ struct InverseMoment {
     const Vec3f mixed(r[1] * r[2] - r[0] * d[2], r[0] * r[2] - r[1] * d[1], r[0] * r[1] - d[0] * r[2]);
     const float determinant = d[0] * cofactors[0] + r[0] * mixed[0] + r[1] * mixed[1];
     sound = determinant > kSound;
-    if (sound) diagonal = cofactors / determinant, rest = mixed / determinant;
+    if (!sound) return;
+    const float inverse = 1 / determinant;
+    diagonal = inverse * cofactors, rest = inverse * mixed;
   }
   Vec3f times(const Vec3f& v) const {
     return {diagonal[0] * v[0] + (rest[0] * v[1] + rest[1] * v[2]),
@@ -91,8 +93,12 @@ struct ProjectionBuffers {
   std::vector<float> potential;        ///< dt p / rho0 (m^2/s)
   std::vector<float> diagonal;         ///< of the matrix (1)
   std::vector<float> missing;          ///< what air leaves out of h grad rho / rho0 (1)
+  std::vector<float> inverseDiagonal;  ///< (1)
+  std::vector<float> atWall;           ///< what a strain moves through a wall's share of the kernel (m^2/s)
   std::vector<float> residual, image;  ///< (m^2/s)
-  std::vector<std::uint8_t> active;    ///< whether it has a part in the solve
+  /// Of the conjugate gradients, with the matrix times it (m^2/s).
+  std::vector<float> direction, directionImage;
+  std::vector<std::uint8_t> active;  ///< whether it has a part in the solve
   std::vector<InverseMoment> inverse;
 
   /// How much of a particle of that density is inside, 0 to 1, rather than at the surface. It fades between
@@ -101,7 +107,9 @@ struct ProjectionBuffers {
   static float inside(float density) { return std::clamp((density - 0.88F) / 0.06F, 0.0F, 1.0F); }
 
   void resize(std::size_t n) {
-    potential.resize(n), diagonal.resize(n), missing.resize(n), residual.resize(n), image.resize(n);
+    for (std::vector<float>* values : {&potential, &diagonal, &missing, &inverseDiagonal, &atWall, &residual,
+                                       &image, &direction, &directionImage})
+      values->resize(n);
     active.resize(n), inverse.resize(n);
   }
 };

@@ -131,17 +131,31 @@ class NeighbourLists {
     for (std::uint32_t k = left; k < count; ++k) list[k] = ghost;
     count_[i] = left;
   }
+  /// A float for each of groups(i), in their order, for what a pass over the pairs leaves to others over the
+  /// same lists. There is memory for them where makePairValues() was called since build().
+  float* pairValues(std::size_t i) { return chunks_[i / kChunk].values[start_[i] / kGroup].lanes; }
+  const float* pairValues(std::size_t i) const {
+    return chunks_[i / kChunk].values[start_[i] / kGroup].lanes;
+  }
+  /// For the particles of a chunk of kChunk: those of several chunks can be made at once.
+  void makePairValues(std::size_t chunk) { chunks_[chunk].makeValues(); }
   std::span<const std::uint32_t> counts() const { return count_; }
   /// Where the particle that fills up the lists is: out of reach of all others (m).
   const Float4& ghost() const { return ghost_; }
   std::size_t bytes() const;
 
  private:
+  /// Of a vector's alignment.
+  struct alignas(4 * kGroup) ValueGroup {
+    float lanes[kGroup];
+  };
   /// The lists of a fixed range of particles: ranges are filled independently.
   struct Chunk {
     std::unique_ptr<std::uint32_t[]> offsets;
-    std::size_t capacity = 0;
+    std::unique_ptr<ValueGroup[]> values;
+    std::size_t capacity = 0, valueCapacity = 0;
     void assign(std::span<const std::uint32_t> lists);
+    void makeValues();
   };
   std::vector<Chunk> chunks_;
   std::vector<std::uint32_t> start_;  ///< of each particle's list within its chunk's

@@ -154,6 +154,12 @@ void NeighbourLists::Chunk::assign(std::span<const std::uint32_t> lists) {
   std::copy(lists.begin(), lists.end(), offsets.get());
 }
 
+void NeighbourLists::Chunk::makeValues() {
+  if (valueCapacity >= capacity) return;
+  valueCapacity = capacity;
+  values = std::make_unique_for_overwrite<ValueGroup[]>(capacity / kGroup + 1);
+}
+
 namespace {
 
 /// Buffers that a thread fills the lists of a chunk in: candidates by far outnumber neighbours, and only the
@@ -222,7 +228,8 @@ void NeighbourLists::build(const CellGrid& grid, std::span<const Float4> positio
 
 std::size_t NeighbourLists::bytes() const {
   std::size_t total = (start_.capacity() + count_.capacity()) * sizeof(std::uint32_t);
-  for (const Chunk& chunk : chunks_) total += chunk.capacity * sizeof(std::uint32_t);
+  for (const Chunk& chunk : chunks_)
+    total += chunk.capacity * sizeof(std::uint32_t) + chunk.valueCapacity * sizeof(float);
   return total;
 }
 
