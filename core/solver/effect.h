@@ -17,7 +17,8 @@ namespace migiwa {
 
 struct StepState;
 
-/// Memory that an effect works in: a Float4 a particle, and one more where neighbour lists read it.
+/// Memory that an effect works in: as many Float4 a particle as it resizes it to, and those of one particle
+/// more where neighbour lists read it.
 using EffectBuffer = std::vector<Float4>;
 
 /// Where in a step an effect acts.
