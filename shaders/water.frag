@@ -4,10 +4,10 @@
 // water, refracted where it entered and where it left, from what is behind. A processor that draws pictures computes both
 // sides of every condition, so there are few, and powers are sums of roots.
 uniform vec4 loss;  // of light in water (1/m); w: height of the ground, which has no depth (m)
-layout(binding = 2) uniform sampler2D exits;        // the layer of the surface through which light leaves
-layout(binding = 3) uniform sampler2D behind;       // what is behind the water
+layout(binding = 2) uniform sampler2D exits;   // the layer of the surface through which light leaves
+layout(binding = 3) uniform sampler2D behind;  // what is behind the water
 layout(binding = 4) uniform sampler2D behindDepth;
-layout(binding = 5) uniform sampler2D entries;      // the layer through which it comes to the eye
+layout(binding = 5) uniform sampler2D entries;  // the layer through which it comes to the eye
 
 out vec4 color;
 
@@ -53,28 +53,31 @@ float reflectance(float cosine, float fromOverTo) {
   return 0.5 * (s * s + p * p);
 }
 
-// Whether a point beyond the surface is in the water: before the layer where light leaves it.
-bool isInWater(vec3 q) {
-  return -q.z < abs(texelFetch(exits, inViewport(pixelOf(q)), 0).w);
+// How far (m) a point lies before the layer where light leaves the water; not positive where that is not there.
+float inWater(vec3 q) {
+  return abs(texelFetch(exits, inViewport(pixelOf(q)), 0).w) + q.z;
 }
 
-// The way (m) of a ray through the water, from p on, at most `most`.
-float wayThrough(vec3 p, vec3 direction, float most) {
-  const int kSteps = 4, kHalvings = 3;
-  float inside = 0.0, outside = most;
-  for (int k = 1; k <= kSteps; ++k) {
-    float way = most * float(k * k) / float(kSteps * kSteps);
-    if (!isInWater(p + way * direction)) {
-      outside = way;
-      break;
-    }
-    inside = way;
-  }
-  for (int k = 0; k < kHalvings; ++k) {
-    float middle = 0.5 * (inside + outside);
-    bool within = isInWater(p + middle * direction);
-    inside = within ? middle : inside;
-    outside = within ? outside : middle;
+// Normals of a layer are not of unit length. Those that cancel out give way to the direction of sight.
+vec3 unit(vec3 normal, vec3 instead) {
+  float length2 = dot(normal, normal);
+  return length2 > 1e-6 ? normal * inversesqrt(length2) : instead;
+}
+
+// The way (m) of a ray through the water from p on, where it is `straight` (m) to the other side straight behind: the last
+// place that was in the water of a search by false position, which halves what it finds too far.
+float wayThrough(vec3 p, vec3 direction, float straight) {
+  const int kSteps = 4;
+  float inside = 0.0, outside = 2.0 * straight, before = straight, beyond = inWater(p + outside * direction);
+  if (beyond > 0.0) return outside;
+  for (int k = 0; k < kSteps; ++k) {
+    float way = mix(inside, outside, clamp(before / max(before - beyond, 1e-9), 0.3, 0.9));
+    float found = inWater(p + way * direction);
+    bool within = found > 0.0;
+    inside = within ? way : inside;
+    before = within ? found : 0.5 * before;
+    outside = within ? outside : way;
+    beyond = within ? 0.5 * beyond : found;
   }
   return inside;
 }
@@ -84,19 +87,19 @@ vec3 waterColor(vec3 p, vec3 n) {
   vec3 direction = normalize(p);
   // Triangles at the outline may turn a smooth normal away from the eye.
   float reflected = reflectance(max(-dot(direction, n), 0.02), 1.0 / kIndex);
-  vec3 inWater = refract(direction, n, 1.0 / kIndex);
+  vec3 refracted = refract(direction, n, 1.0 / kIndex);
 
-  float straight = max(abs(texelFetch(exits, inViewport(pixelOf(p)), 0).w) + p.z, 0.0);
-  float way = wayThrough(p, inWater, 2.0 * straight);
-  vec3 q = p + way * inWater;
+  float way = wayThrough(p, refracted, max(inWater(p), 0.0));
+  vec3 q = p + way * refracted;
   vec2 own = pixelOf(q);
-  vec4 exit = texelFetch(exits, inViewport(own), 0);
+  vec4 found = texelFetch(exits, inViewport(own), 0);
+  vec3 exit = unit(found.xyz, refracted);
 
   // Walls that the water touches are as if they had its index.
-  bool free = exit.w > 0.0;
-  float mirrored = free ? reflectance(clamp(dot(inWater, exit.xyz), 0.02, 1.0), kIndex) : 0.0;
-  vec3 onward = free ? refract(inWater, -exit.xyz, kIndex) : inWater;
-  onward = dot(onward, onward) > 0.5 ? onward : reflect(inWater, exit.xyz);
+  bool free = found.w > 0.0;
+  float mirrored = free ? reflectance(clamp(dot(refracted, exit), 0.02, 1.0), kIndex) : 0.0;
+  vec3 onward = free ? refract(refracted, -exit, kIndex) : refracted;
+  onward = dot(onward, onward) > 0.5 ? onward : reflect(refracted, exit);
 
   // What is behind, where the ray comes to if that is as far as straight behind, or else on the ground.
   vec3 upwards = mat3(view) * up.xyz;
@@ -119,5 +122,6 @@ void main() {
   float depth = abs(entry.w);
   if (behindAt(gl_FragCoord.xy) < depth) discard;
   vec2 ndc = 2.0 * (gl_FragCoord.xy - viewport.xy) / viewport.zw - 1.0;
-  color = vec4(waterColor(depth * vec3(ndc / vec2(clip[0][0], clip[1][1]), -1.0), entry.xyz), 1.0);
+  vec3 p = depth * vec3(ndc / vec2(clip[0][0], clip[1][1]), -1.0);
+  color = vec4(waterColor(p, unit(entry.xyz, -normalize(p))), 1.0);
 }

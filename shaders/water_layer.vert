@@ -4,12 +4,9 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 waterNormal;
 
-out vec3 place;   // in the eye's space
 out vec3 normal;  // in the eye's space, out of the water
 
 void main() {
-  vec4 inView = view * vec4(position, 1.0);
-  place = inView.xyz;
   normal = mat3(view) * waterNormal;
-  gl_Position = clip * inView;
+  gl_Position = clip * (view * vec4(position, 1.0));
 }

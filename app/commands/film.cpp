@@ -130,15 +130,20 @@ FilmWriter::FilmWriter(const FilmJob& job) : job_(job) {
 
 FilmWriter::~FilmWriter() {
   std::error_code ignored;
+  if (writing_.valid()) writing_.wait();
   if (!work_.empty()) fs::remove_all(work_, ignored);
 }
 
 void FilmWriter::add(const Image& frame) {
-  writeTextFile(work_ / frameName(frames_), encodePng(frame));
+  if (writing_.valid()) writing_.get();
+  writing_ = std::async(std::launch::async, [frame, file = work_ / frameName(frames_)] {
+    writeTextFile(file, encodePng(frame, PngEffort::least));
+  });
   ++frames_;
 }
 
 void FilmWriter::finish() {
+  if (writing_.valid()) writing_.get();
   if (filmEncoderInstalled(job_.file)) return encode();
   const fs::path folder = frameFolder(job_.file);
   std::error_code failure;

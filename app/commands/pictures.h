@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -94,6 +95,7 @@ class FilmWriter {
   FilmWriter(const FilmWriter&) = delete;
   FilmWriter& operator=(const FilmWriter&) = delete;
 
+  /// Writes it while the next one is drawn; what goes wrong is thrown by the next call, or by finish().
   void add(const Image& frame);
   std::size_t frames() const { return frames_; }
   /// Puts the film in its place. Throws MissingError where the encoder fails, or where there is none: then
@@ -106,6 +108,7 @@ class FilmWriter {
   FilmJob job_;
   std::filesystem::path work_;  ///< the folder of the frames; empty once it is gone
   std::size_t frames_ = 0;
+  std::future<void> writing_;  ///< of the last frame
 };
 
 }  // namespace migiwa

@@ -76,8 +76,8 @@ class ViewerTaker final : public PictureTaker {
   Image take(const Simulation& simulation, const FrameView& frame) override {
     FrameView shown = frame;
     if (surface_)
-      shown.water = std::make_shared<const SurfaceMesh>(
-          surface_->mesh(frame.positions, frame.velocities, simulation.time()));
+      shown.water =
+          std::make_shared<const SurfaceMesh>(surface_->mesh(frame.positions, {}, simulation.time()));
     return viewer_.takePicture(shown, RunStatus{}, job_.width, job_.height);
   }
   const Viewer& viewer() const { return viewer_; }

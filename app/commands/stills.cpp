@@ -16,7 +16,7 @@ class StillTaker final : public PictureTaker {
   Image take(const Simulation& simulation, const FrameView& frame) override {
     const Scene& scene = simulation.scene();
     if (!surface_) surface_.emplace(scene, SurfaceOptions{}, pool_);
-    const SurfaceMesh water = surface_->mesh(frame.positions, frame.velocities, simulation.time());
+    const SurfaceMesh water = surface_->mesh(frame.positions, {}, simulation.time());
     const Stage stage({.scene = &scene, .walls = &surface_->boundary(), .water = &water});
 
     Activity activity("tracing rays");

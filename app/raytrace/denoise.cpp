@@ -10,7 +10,13 @@ namespace {
 /// Rows that are worked on as one; windows of this radius around a pixel; patches of this radius (pixels).
 constexpr int kBand = 24, kWindow = 7, kPatch = 3;
 /// How unlike patches and guides may be, in standard deviations of their noise.
-constexpr float kAlikeColor = 0.8F, kAlikeGuide = 0.8F;
+struct Strength {
+  float color, guide;
+};
+/// From those that keep most to those that take most out: of these each pixel has its own.
+constexpr std::array<Strength, 4> kStrengths{{{0.65F, 0.8F}, {0.8F, 1.5F}, {1.4F, 3.0F}, {2.5F, 5.0F}}};
+/// Errors are compared as means over squares of this radius, shares of strengths are smoothed over this one.
+constexpr int kErrors = 8, kShares = 3;
 /// Least differences of guides that count: of normals and albedo, of logarithms of distance.
 constexpr float kLeastGuide = 2e-3F, kLeastDistance = 2e-4F;
 
@@ -31,6 +37,8 @@ Channel boxMean(const Channel& from, int width, int height, int radius) {
   for (int x = 0; x < width; ++x) line(across.data() + x, to.data() + x, height, width);
   return to;
 }
+
+using Halves = std::array<Radiance, 2>;
 
 /// Variances of the mean of a half: those of its samples, scaled by how far the halves are apart, for samples
 /// that are evenly spread scatter less in the mean than each by itself.
@@ -73,7 +81,7 @@ std::array<Channel, Exposure::kGuides> guideScales(const Exposure& exposure, Thr
         const float slopeX = 0.5F * (at(1, 0) - at(-1, 0)), slopeY = 0.5F * (at(0, 1) - at(0, -1));
         const auto i = static_cast<std::size_t>(y * width + x);
         const float slope2 = std::min(slopeX * slopeX, slopeY * slopeY);
-        scales[g][i] = 1 / (kAlikeGuide * kAlikeGuide * std::max({least, noise[i], slope2}));
+        scales[g][i] = 1 / std::max({least, noise[i], slope2});
       }
     }
   });
@@ -90,10 +98,12 @@ inline float falling(float x) {
 class Band {
  public:
   Band(const Exposure& exposure, const std::array<std::array<Channel, 3>, 2>& variances,
-       const std::array<Channel, Exposure::kGuides>& scales, int top)
+       const std::array<Channel, Exposure::kGuides>& scales, const Strength& strength, int top)
       : exposure_(exposure),
         variances_(variances),
         scales_(scales),
+        color2_(strength.color * strength.color),
+        guide2_(1 / (strength.guide * strength.guide)),
         width_(exposure.width),
         top_(top),
         rows_(std::min(kBand, exposure.height - top)) {
@@ -107,7 +117,7 @@ class Band {
     across_.assign(padded, 0);
   }
 
-  void average(Radiance& result) {
+  void average(Halves& result) {
     for (int dy = -kWindow; dy <= kWindow; ++dy)
       for (int dx = -kWindow; dx <= kWindow; ++dx) {
         compareGuides(dx, dy);
@@ -115,8 +125,8 @@ class Band {
       }
     for (int i = 0; i < rows_ * width_; ++i) {
       const auto at = static_cast<std::size_t>(i), to = static_cast<std::size_t>(top_ * width_ + i);
-      for (std::size_t c = 0; c < 3; ++c)
-        result[c][to] = 0.5F * (sums_[0][c][at] / weights_[0][at] + sums_[1][c][at] / weights_[1][at]);
+      for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t c = 0; c < 3; ++c) result[half][c][to] = sums_[half][c][at] / weights_[half][at];
     }
   }
 
@@ -139,7 +149,7 @@ class Band {
         for (int x = firstColumn(dx); x < endColumn(dx); ++x) {
           const float difference = f[x + shift] - f[x];
           const float beyondNoise = difference * difference - v[x] - std::min(v[x], v[x + shift]);
-          most[x] = std::max(most[x], beyondNoise * s[x]);
+          most[x] = std::max(most[x], beyondNoise * (guide2_ * s[x]));
         }
       }
     }
@@ -161,8 +171,7 @@ class Band {
           const float noise = v[x] + std::min(v[x], v[x + shift]);
           // A little of the brightness itself: below that nobody sees a difference.
           const float least = 1e-6F + 1e-5F * u[x] * u[x];
-          to[x] +=
-              (difference * difference - noise) / (least + kAlikeColor * kAlikeColor * (v[x] + v[x + shift]));
+          to[x] += (difference * difference - noise) / (least + color2_ * (v[x] + v[x + shift]));
         }
       }
     }
@@ -206,6 +215,7 @@ class Band {
   const Exposure& exposure_;
   const std::array<std::array<Channel, 3>, 2>& variances_;
   const std::array<Channel, Exposure::kGuides>& scales_;
+  float color2_, guide2_;
   int width_, top_, rows_;
   std::array<std::array<Channel, 3>, 2> sums_;
   std::array<Channel, 2> weights_;
@@ -214,16 +224,51 @@ class Band {
 
 static_assert(kPatch == 3, "the sums over patches are written out");
 
+/// How far a filtered half is from the other half as it is, relative to the brightness: its error and what
+/// is the same for all strengths [RMZ].
+Channel errorsOf(const Halves& filtered, const Exposure& exposure) {
+  Channel errors(filtered[0][0].size(), 0);
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float mean = 0.5F * (filtered[0][c][i] + filtered[1][c][i]);
+      for (std::size_t half = 0; half < 2; ++half) {
+        const float difference = filtered[half][c][i] - exposure.halves[1 - half][c][i];
+        errors[i] += difference * difference / (1e-3F + mean * mean);
+      }
+    }
+  return boxMean(errors, exposure.width, exposure.height, kErrors);
+}
+
 }  // namespace
 
 Radiance denoised(const Exposure& exposure, ThreadPool& pool) {
   const auto variances = calibrated(exposure, pool);
   const auto scales = guideScales(exposure, pool);
-  Radiance result = exposure.halves[0];
   const auto bands = static_cast<std::size_t>((exposure.height + kBand - 1) / kBand);
-  pool.run(bands, [&](std::size_t band) {
-    Band(exposure, variances, scales, static_cast<int>(band) * kBand).average(result);
-  });
+  std::array<Halves, kStrengths.size()> filtered;
+  std::array<Channel, kStrengths.size()> errors, shares;
+  for (std::size_t s = 0; s < kStrengths.size(); ++s) {
+    filtered[s] = exposure.halves;
+    pool.run(bands, [&](std::size_t band) {
+      Band(exposure, variances, scales, kStrengths[s], static_cast<int>(band) * kBand).average(filtered[s]);
+    });
+    errors[s] = errorsOf(filtered[s], exposure);
+    shares[s].assign(errors[s].size(), 0);
+  }
+  for (std::size_t i = 0; i < errors[0].size(); ++i) {
+    std::size_t best = 0;
+    for (std::size_t s = 1; s < kStrengths.size(); ++s)
+      if (errors[s][i] < errors[best][i]) best = s;
+    shares[best][i] = 1;
+  }
+  Radiance result;
+  for (Channel& plane : result) plane.assign(errors[0].size(), 0);
+  for (std::size_t s = 0; s < kStrengths.size(); ++s) {
+    const Channel share = boxMean(shares[s], exposure.width, exposure.height, kShares);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < share.size(); ++i)
+        result[c][i] += 0.5F * share[i] * (filtered[s][0][c][i] + filtered[s][1][c][i]);
+  }
   return result;
 }
 

@@ -64,8 +64,10 @@ Shader compile(GLenum stage, const std::string& name) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(std::string_view name) : program_(glCreateProgram()) {
-  const Shader vertex = compile(GL_VERTEX_SHADER, std::string(name) + ".vert");
+ShaderProgram::ShaderProgram(std::string_view name, std::string_view vertexName)
+    : program_(glCreateProgram()) {
+  const Shader vertex =
+      compile(GL_VERTEX_SHADER, std::string(vertexName.empty() ? name : vertexName) + ".vert");
   const Shader fragment = compile(GL_FRAGMENT_SHADER, std::string(name) + ".frag");
   glAttachShader(program_.name(), vertex.name());
   glAttachShader(program_.name(), fragment.name());

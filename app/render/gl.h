@@ -67,8 +67,9 @@ struct ProgramKind {
 
 class ShaderProgram {
  public:
-  /// Compiles shaders/`name`.vert and shaders/`name`.frag. Throws std::runtime_error with the driver's log.
-  explicit ShaderProgram(std::string_view name);
+  /// Compiles shaders/`name`.vert and shaders/`name`.frag, or another program's .vert. Throws
+  /// std::runtime_error with the driver's log.
+  explicit ShaderProgram(std::string_view name, std::string_view vertexName = {});
 
   void use() const { glUseProgram(program_.name()); }
   GLint uniform(const char* name) const { return glGetUniformLocation(program_.name(), name); }

@@ -3,34 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include <zlib.h>
 
-namespace {
-
-/// What stb_image_write asks of a compressor: `size` bytes into `*outSize` bytes that it frees. zlib writes a
-/// fifth less than stb's own.
-unsigned char* deflateForPng(unsigned char* bytes, int size, int* outSize, int /*quality*/) {
-  uLongf length = compressBound(static_cast<uLong>(size));
-  auto* out = static_cast<unsigned char*>(std::malloc(length));
-  if (out == nullptr ||
-      compress2(out, &length, bytes, static_cast<uLong>(size), Z_DEFAULT_COMPRESSION) != Z_OK) {
-    std::free(out);
-    return nullptr;
-  }
-  *outSize = static_cast<int>(length);
-  return out;
-}
-
-}  // namespace
-
-#define STBIW_ZLIB_COMPRESS deflateForPng
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb_image_write.h>
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -55,22 +33,60 @@ std::optional<Image> readPng(const std::filesystem::path& file) {
   return image;
 }
 
-std::string encodePng(const Image& image) {
-  std::string bytes;
-  const auto append = [](void* context, void* data, int size) {
-    static_cast<std::string*>(context)->append(static_cast<const char*>(data),
-                                               static_cast<std::size_t>(size));
-  };
-  // Pictures are opaque: a fourth byte a pixel would only take room.
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(image.rgba.size() / 4 * 3);
-  for (std::size_t k = 0; k < image.rgba.size(); ++k)
-    if (k % 4 != 3) rgb.push_back(image.rgba[k]);
-  if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, rgb.data(), image.width * 3)) {
+namespace {
+
+void appendNumber(std::string& bytes, std::size_t number) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift & 255U));
+}
+
+/// A chunk: its length, its kind of four letters, what it holds, a checksum of both.
+void appendChunk(std::string& png, std::string_view kind, std::string_view content) {
+  appendNumber(png, content.size());
+  const std::size_t begin = png.size();
+  png += kind;
+  png += content;
+  appendNumber(png, crc32(0, reinterpret_cast<const Bytef*>(png.data() + begin),
+                          static_cast<uInt>(png.size() - begin)));
+}
+
+/// The rows without alpha, for pictures are opaque, each byte less the one above it: what most rows repeat.
+std::vector<std::uint8_t> filteredRows(const Image& image) {
+  constexpr std::uint8_t kLessAbove = 2;
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<std::uint8_t> rows(static_cast<std::size_t>(image.height) * (1 + 3 * width));
+  std::vector<std::uint8_t> above(3 * width, 0), row(3 * width);
+  std::uint8_t* to = rows.data();
+  for (int y = 0; y < image.height; ++y) {
+    const std::uint8_t* from = image.pixel(0, y);
+    for (std::size_t x = 0; x < width; ++x) std::copy_n(from + 4 * x, 3, row.data() + 3 * x);
+    *to++ = kLessAbove;
+    for (std::size_t k = 0; k < row.size(); ++k) *to++ = static_cast<std::uint8_t>(row[k] - above[k]);
+    above.swap(row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string encodePng(const Image& image, PngEffort effort) {
+  const std::vector<std::uint8_t> rows = filteredRows(image);
+  uLongf size = compressBound(static_cast<uLong>(rows.size()));
+  std::string pixels(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(pixels.data()), &size, rows.data(), static_cast<uLong>(rows.size()),
+                effort == PngEffort::least ? Z_BEST_SPEED : Z_DEFAULT_COMPRESSION) != Z_OK) {
     throw std::runtime_error("a picture of " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " pixels cannot be encoded");
   }
-  return bytes;
+  pixels.resize(size);
+  std::string header;
+  appendNumber(header, static_cast<std::size_t>(image.width));
+  appendNumber(header, static_cast<std::size_t>(image.height));
+  header += std::string_view("\x08\x02\0\0\0", 5);  // eight bits of red, green and blue
+  std::string png = "\x89PNG\r\n\x1A\n";
+  appendChunk(png, "IHDR", header);
+  appendChunk(png, "IDAT", pixels);
+  appendChunk(png, "IEND", "");
+  return png;
 }
 
 namespace {
@@ -114,9 +130,9 @@ void RenderTarget::beginScene() const {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void RenderTarget::copyScene(const GlFramebuffer& to) const {
-  glBlitNamedFramebuffer(scene_.name(), to.name(), 0, 0, width_, height_, 0, 0, width_, height_,
-                         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+void RenderTarget::copyScene(const GlFramebuffer& to, GLbitfield what) const {
+  glBlitNamedFramebuffer(scene_.name(), to.name(), 0, 0, width_, height_, 0, 0, width_, height_, what,
+                         GL_NEAREST);
 }
 
 void RenderTarget::continueScene() const {
@@ -124,7 +140,7 @@ void RenderTarget::continueScene() const {
 }
 
 void RenderTarget::beginOverlay() const {
-  copyScene(result_);
+  copyScene(result_, GL_COLOR_BUFFER_BIT);
   glBindFramebuffer(GL_FRAMEBUFFER, result_.name());
 }
 
@@ -145,8 +161,11 @@ Image RenderTarget::read() const {
 
 std::optional<float> RenderTarget::depthAt(int x, int y) const {
   float depth = 1;
+  const int row = height_ - 1 - y;
+  glBlitNamedFramebuffer(scene_.name(), result_.name(), x, row, x + 1, row + 1, x, row, x + 1, row + 1,
+                         GL_DEPTH_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, result_.name());
-  glReadPixels(x, height_ - 1 - y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+  glReadPixels(x, row, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
   if (depth >= 1) return std::nullopt;
   return depth;
 }

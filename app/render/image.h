@@ -37,8 +37,13 @@ struct Image {
 
 // Pictures as PNG; the same picture always gives the same bytes.
 
-/// The bytes of a PNG file.
-std::string encodePng(const Image& image);
+/// How long it takes to make a PNG file, and how small it gets.
+enum class PngEffort {
+  least,  ///< for what is read again soon: a third larger
+  usual
+};
+/// The bytes of a PNG file, without alpha.
+std::string encodePng(const Image& image, PngEffort effort = PngEffort::usual);
 /// Nothing where there is no such file, or it is none.
 std::optional<Image> readPng(const std::filesystem::path& file);
 
@@ -56,8 +61,9 @@ class RenderTarget {
 
   /// Binds the multisampled buffer and clears it.
   void beginScene() const;
-  /// Copies what it holds so far, resolved, with its depth (32-bit) to a framebuffer of the same size.
-  void copyScene(const GlFramebuffer& to) const;
+  /// Copies what it holds so far, resolved, to a framebuffer of the same size: colours, depth (32-bit), or
+  /// both.
+  void copyScene(const GlFramebuffer& to, GLbitfield what = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT) const;
   /// Binds it again.
   void continueScene() const;
   /// Resolves it and binds the result.

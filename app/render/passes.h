@@ -7,6 +7,7 @@
 
 #include "app/render/gl.h"
 #include "app/render/image.h"
+#include "app/render/projection.h"
 #include "core/base/math.h"
 #include "core/simulation/frame_view.h"
 #include "core/walls/surface.h"
@@ -106,14 +107,20 @@ class SurfacePass {
 // The liquid's surface as water: it refracts what is behind it, takes light by the way through it and mirrors
 // the sky. A ray meets at most two bodies of water, one behind the other.
 
+struct WaterShot {
+  Mat4f toClip;                   ///< from the scene
+  std::array<float, 4> viewport;  ///< x, y from the bottom left, width, height (pixels)
+  Vec3f loss;                     ///< of red, green and blue light in water (1/m)
+  float groundHeight = 0;         ///< along the up axis (m)
+};
+
 class WaterPass {
  public:
   WaterPass();
   /// From now on draws this one.
   void set(const SurfaceMesh& mesh);
-  /// Over what the target holds, which is what is behind the water. `loss`: of red, green and blue light in
-  /// water (1/m); the ground's height along the up axis (m).
-  void draw(const RenderTarget& target, const Vec3f& loss, float groundHeight);
+  /// Over what the target holds, which is what is behind the water.
+  void draw(const RenderTarget& target, const WaterShot& shot);
 
  private:
   /// Faces to the air (false) or to walls.
@@ -123,11 +130,14 @@ class WaterPass {
   void shade(const GlFramebuffer& into, const GlTexture& entries, const GlTexture& exits,
              const GlTexture& behind) const;
   void resize(const RenderTarget& target);
+  /// Puts the scissors around the water. False where it is nowhere in the viewport.
+  bool keepToWater(const WaterShot& shot) const;
 
   ShaderProgram layer_, surface_, cover_;
   GlBuffer vertices_, indices_;
   GlVertexArray layout_;
   GLsizei freeIndices_ = 0, wetIndices_ = 0;  ///< in this order in indices_
+  Bounds bounds_;                             ///< of the mesh (m)
   int width_ = 0, height_ = 0;
   /// What is behind the water, without and with the water that is seen through other water.
   GlTexture opaque_, all_, depth_;

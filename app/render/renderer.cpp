@@ -151,7 +151,7 @@ void Renderer::draw(const FrameView& frame, const Shot& asked, const RenderTarge
   }
   if (frame.water) {
     if (shot.walls) drawLines(width);  // those behind the water, which are seen through it
-    drawWater(frame, shot, target);
+    drawWater(frame, shot, uniforms, target);
   }
   if (!shot.walls) return;
   drawLines(width);
@@ -164,13 +164,15 @@ void Renderer::drawLines(float width) const {
   drainPass_.draw(width, kDrainInk);
 }
 
-void Renderer::drawWater(const FrameView& frame, const Shot& shot, const RenderTarget& target) {
+void Renderer::drawWater(const FrameView& frame, const Shot& shot, const FrameUniforms& uniforms,
+                         const RenderTarget& target) {
   if (!waterPass_) waterPass_.emplace();
   if (frame.water != water_) {
     water_ = frame.water;
     waterPass_->set(*water_);
   }
-  waterPass_->draw(target, shot.waterLoss, static_cast<float>(ground_.center.dot(ground_.up)));
+  waterPass_->draw(target, {uniforms.clip * uniforms.view, uniforms.viewport, shot.waterLoss,
+                            static_cast<float>(ground_.center.dot(ground_.up))});
 }
 
 std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at) {

@@ -40,6 +40,8 @@ struct Shot {
 /// Whether the shot's clip plane cuts away what is at p.
 bool isCut(const Shot& shot, const Vec3f& p);
 
+struct FrameUniforms;
+
 class Renderer {
  public:
   Renderer(const Surroundings& surroundings, const ColorMap& colors);
@@ -59,7 +61,8 @@ class Renderer {
   void collectPatches(const Shot& shot);
   void drawSection(const Shot& shot, float width);
   void drawLines(float width) const;
-  void drawWater(const FrameView& frame, const Shot& shot, const RenderTarget& target);
+  void drawWater(const FrameView& frame, const Shot& shot, const FrameUniforms& uniforms,
+                 const RenderTarget& target);
 
   Ground ground_;
   std::vector<WallMesh> meshes_;

@@ -15,6 +15,7 @@ namespace {
 constexpr float kSmooth = 0.8F, kSame = 0.9999F;
 
 constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
+constexpr float kFarthestDepth = 1;  // depth
 
 /// Of the picture behind the water: where refraction shows much of it on few pixels, its mean is seen.
 constexpr GLsizei kLevels = 5;
@@ -89,7 +90,7 @@ void requireComplete(const GlFramebuffer& framebuffer) {
 WaterPass::WaterPass()
     : layer_("water_layer"),
       surface_("water"),
-      cover_("water_cover"),
+      cover_("water_cover", "water"),
       vertices_(makeBuffer()),
       indices_(makeBuffer()),
       layout_(makeVertexArray()) {
@@ -97,6 +98,8 @@ WaterPass::WaterPass()
 }
 
 void WaterPass::set(const SurfaceMesh& mesh) {
+  bounds_ = {};
+  for (const Vec3f& p : mesh.positions) bounds_.include(p.cast<double>());
   std::vector<MeshVertex> vertices;
   std::vector<GLuint> indices;
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
@@ -157,9 +160,8 @@ void WaterPass::drawFaces(const ShaderProgram& program, bool wet) const {
 
 void WaterPass::drawLayer(const GlFramebuffer& into, GLenum culled, const GlTexture* before) const {
   glBindFramebuffer(GL_FRAMEBUFFER, into.name());
-  constexpr float kFarthest = 1;
   glClearNamedFramebufferfv(into.name(), GL_COLOR, 0, kNothing.data());
-  glClearNamedFramebufferfv(into.name(), GL_DEPTH, 0, &kFarthest);
+  glClearNamedFramebufferfv(into.name(), GL_DEPTH, 0, &kFarthestDepth);
   glCullFace(culled);
   layer_.set("beyondLayer", before != nullptr ? 1 : 0);
   if (before != nullptr) glBindTextureUnit(2, before->name());
@@ -187,38 +189,76 @@ void WaterPass::shade(const GlFramebuffer& into, const GlTexture& entries, const
   glDepthFunc(GL_LESS);
 }
 
-void WaterPass::draw(const RenderTarget& target, const Vec3f& loss, float groundHeight) {
+bool WaterPass::keepToWater(const WaterShot& shot) const {
+  const Eigen::Vector2f low(-1, -1), high(1, 1);
+  Eigen::Vector2f least = high, most = low;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3d corner((k & 1) != 0 ? bounds_.max.x() : bounds_.min.x(),
+                       (k & 2) != 0 ? bounds_.max.y() : bounds_.min.y(),
+                       (k & 4) != 0 ? bounds_.max.z() : bounds_.min.z());
+    const Eigen::Vector4f clip = shot.toClip * corner.cast<float>().homogeneous();
+    if (clip.w() <= 0) {  // behind the eye: water may be anywhere
+      least = low, most = high;
+      break;
+    }
+    least = least.cwiseMin(clip.head<2>() / clip.w()), most = most.cwiseMax(clip.head<2>() / clip.w());
+  }
+  least = least.cwiseMax(low), most = most.cwiseMin(high);
+  if ((least.array() > most.array()).any()) return false;
+  constexpr int kMargin = 2;  // pixels
+  std::array<GLint, 2> from, size;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const float begin = shot.viewport[axis], width = shot.viewport[axis + 2];
+    const auto place = [&](float at) { return begin + (0.5F + 0.5F * at) * width; };
+    from[axis] = std::max(static_cast<int>(place(least[i])) - kMargin, 0);
+    size[axis] = static_cast<int>(place(most[i])) + 1 + kMargin - from[axis];
+  }
+  glScissor(from[0], from[1], size[0], size[1]);
+  return true;
+}
+
+void WaterPass::draw(const RenderTarget& target, const WaterShot& shot) {
   if (freeIndices_ + wetIndices_ == 0) return;
+  if (!keepToWater(shot)) return;
   resize(target);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glBindVertexArray(layout_.name());
-  surface_.set("loss", loss.x(), loss.y(), loss.z(), groundHeight);
-  target.copyScene(toOpaque_);
+  surface_.set("loss", shot.loss.x(), shot.loss.y(), shot.loss.z(), shot.groundHeight);
+  // Depth is asked for where the water is.
+  glDisable(GL_SCISSOR_TEST);
+  glClearNamedFramebufferfv(toOpaque_.name(), GL_DEPTH, 0, &kFarthestDepth);
+  target.copyScene(toOpaque_, GL_COLOR_BUFFER_BIT);
+  glEnable(GL_SCISSOR_TEST);
+  target.copyScene(toOpaque_, GL_DEPTH_BUFFER_BIT);
   drawLayer(toEntries_, GL_BACK, nullptr);
   drawLayer(toExits_, GL_FRONT, nullptr);
   drawLayer(toFarEntries_, GL_BACK, &exits_);
   drawLayer(toFarExits_, GL_FRONT, &farEntries_);
 
-  // The water behind the nearest, over what is behind both.
+  // The water behind the nearest, over what is behind both, all of which may be seen through it.
+  glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(toOpaque_.name(), toAll_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glEnable(GL_SCISSOR_TEST);
   shade(toAll_, farEntries_, farExits_, opaque_);
   glGenerateTextureMipmap(all_.name());
   glClearNamedFramebufferfv(toColors_.name(), GL_COLOR, 0, kNothing.data());
   shade(toColors_, entries_, exits_, all_);
 
-  // The nearest, a hair farther, so that lines on walls that it touches are before it.
   target.continueScene();
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(1, 1);
-  glCullFace(GL_BACK);
   glBindTextureUnit(2, colors_.name());
-  for (const bool wet : {false, true}) drawFaces(cover_, wet);
-  glDisable(GL_POLYGON_OFFSET_FILL);
+  glBindTextureUnit(3, entries_.name());
   glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  cover_.use();
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace migiwa

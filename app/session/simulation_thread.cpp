@@ -392,8 +392,7 @@ void SimulationThread::publish(std::unique_lock<std::mutex>& lock) {
 std::shared_ptr<const SurfaceMesh> SimulationThread::waterOf(const FrameView& frame) {
   const Scene& scene = simulation_->scene();
   if (!water_ || !water_->fits(scene)) water_ = std::make_unique<Water>(scene, threads_);
-  return std::make_shared<const SurfaceMesh>(
-      water_->surface.mesh(frame.positions, frame.velocities, simulation_->time()));
+  return std::make_shared<const SurfaceMesh>(water_->surface.mesh(frame.positions, {}, simulation_->time()));
 }
 
 }  // namespace migiwa
