@@ -245,7 +245,7 @@ int runCommandLine(std::vector<std::string> arguments) {
 std::vector<Command> allCommands() {
   return {viewCommand(),   renderCommand(),  simulateCommand(), checkCommand(),
           gammaCommand(),  summaryCommand(), slimCommand(),     studyCommand(),
-          schemaCommand(), truthCommand(),   surfaceCommand()};
+          schemaCommand(), truthCommand(),   surfaceCommand(),  sectionCommand()};
 }
 
 }  // namespace migiwa

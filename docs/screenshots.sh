@@ -117,13 +117,13 @@ windowPicture() {
   # shellcheck disable=SC2016
   (cd "$folder" && MIGIWA_CACHE=$PWD/cache xvfb-run -a -s "-screen 0 1280x720x24 -noreset" bash -c \
     '"$0" view "${@:2}" & /usr/bin/python3 "$1" <hands; wait' "$root/$migiwa" "$root/tests/render/window_hands.py" "${@:2}")
-  cwebp -quiet -q 85 "$folder/migiwa_0001.png" -o "screenshots/$name.webp"
+  cwebp -quiet -q 60 -m 6 "$folder/migiwa_0001.png" -o "screenshots/$name.webp"
 }
 
 screenshotsOfWindow() {
   setup test
   local scene=$PWD/scenes/dam_break.json
-  say "The window: its start, its gallery, a branch on the time line, a particle that is looked into"
+  say "The window: its start, its gallery, a branch on the time line, a particle that is looked into, a section, changes"
   windowPicture window_start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
   windowPicture window_gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
   windowPicture window_time_line "$scene" \
@@ -131,6 +131,12 @@ screenshotsOfWindow() {
   windowPicture window_particle "$scene" \
     --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' \
     <<<$'wait 9\nkey space\nwait 2\nclick 720 408\nwait 25\nmove 200 700\nwait 1\nkey p\nwait 3\nclose'
+  # Its heading, "Show", "Fit", the list of fields, and pressure in it.
+  windowPicture window_section "$scene" --set '/view/camera={"eye":[1.2,1.1,4.2],"target":[1.55,0.42,0.8],"fov_degrees":34}' \
+    <<<$'wait 12\nkey space\nwait 3\nclick 100 592\nwait 2\nclick 135 615\nwait 2\nclick 198 638\nwait 2\nclick 210 661\nwait 2\nclick 160 580\nwait 2\nkey Right\nwait 4\nmove 620 440\nwait 1\nmove 622 440\nwait 2\nkey p\nwait 3\nclose'
+  # Iterations, the correction and the colour are changed, one change is taken back, and the heading is opened.
+  windowPicture window_changes "$scene" \
+    <<<$'wait 6\nkey space\nwait 3\nclick 160 293\nwait 2\nkey c\nwait 2\nclick 134 523\nwait 2\nclick 234 500\nwait 2\nclick 100 247\nwait 2\nclick 100 500\nwait 2\nclick 80 523\nwait 3\nmove 800 250\nwait 2\nkey p\nwait 3\nclose'
 }
 
 # screenshotsRayTraced [SIZE [SAMPLES]]

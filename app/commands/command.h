@@ -80,6 +80,7 @@ Command studyCommand();
 Command schemaCommand();
 Command truthCommand();
 Command surfaceCommand();
+Command sectionCommand();
 
 /// What is shipped under that name: in the current folder, or in the repository that the program was built
 /// in. Throws InputError at `option` where it is in neither; `what` such as "a scene file".

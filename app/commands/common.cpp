@@ -263,21 +263,21 @@ fs::path defaultScene() {
   return shippedPlace(fs::path("scenes") / "dam_break.json", "SCENE", "a scene file");
 }
 
-/// migiwa_0001.png and so on: the first that is not there yet.
-fs::path freePictureName() {
+/// STEM0001ENDING and so on: the first that is not there yet.
+fs::path freeName(const std::string& stem, const std::string& ending) {
   for (int number = 1;; ++number) {
     std::string digits = std::to_string(number);
     digits.insert(0, digits.size() < 4 ? 4 - digits.size() : 0, '0');
-    const fs::path file = "migiwa_" + digits + ".png";
+    const fs::path file = stem + digits + ending;
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return file;
   }
 }
 
-void savePicture(const Image& image) {
+void keepFile(const std::string& stem, const std::string& ending, const std::string& content) {
   try {
-    const fs::path file = freePictureName();
-    writeTextFile(file, encodePng(image));
+    const fs::path file = freeName(stem, ending);
+    writeTextFile(file, content);
     std::cout << file.string() << std::endl;
   } catch (const std::exception& error) {
     // A full disk is no reason to close the window.
@@ -293,7 +293,8 @@ int view(const ViewOptions& options, const CommonOptions& common) {
                        !options.paused,
                        options.frames,
                        static_cast<std::size_t>(options.memory) << 20U,
-                       savePicture};
+                       [](const Image& image) { keepFile("migiwa_", ".png", encodePng(image)); },
+                       [](const std::string& csv) { keepFile("migiwa_section_", ".csv", csv); }};
   window.water = options.scene.empty();
   window.gallery = galleryEntries;
   window.open = [](const fs::path& other) { return openScene(other, {}); };
@@ -325,11 +326,15 @@ Command viewCommand() {
                   "Memory that the states of the time line may take; the less, the longer the way to a time.",
               .range = {{1, 1'000'000}}}},
             [options](const CommonOptions& common) { return view(*options, common); },
-            "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there.\n"
+            "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there; "
+            "the\n"
+            "wheel with control moves a section.\n"
             "Keys: space plays and pauses, right and left arrow step a frame forth and back, Home and End "
             "go\n"
             "to the ends of the time line, R begins anew, C corrects or not, H hides the panels, P saves a\n"
-            "picture here as migiwa_0001.png and so on.\n"
+            "picture here as migiwa_0001.png and so on. Control and Z takes a change back, control and Y "
+            "does it\n"
+            "again.\n"
             "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
             "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
       }};

@@ -26,7 +26,8 @@ std::string axisLabel(int axis, const Vec3d& origin) {
   return text.str();
 }
 
-/// The pictures' own colour map, as gnuplot's palette.
+}  // namespace
+
 std::string sequentialPalette() {
   std::ostringstream out;
   out << "set palette defined (";
@@ -42,6 +43,8 @@ std::string sequentialPalette() {
   out << ")\n";
   return out.str();
 }
+
+namespace {
 
 std::string panelData(const MapWindow& window, const MapPanel& panel, int number) {
   std::ostringstream out;

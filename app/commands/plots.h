@@ -61,6 +61,9 @@ std::string convergenceSummary(const StudyPlan& plan, const std::vector<Finished
 /// The colour of the k-th line, for gnuplot.
 const char* lineColor(std::size_t k);
 
+/// The pictures' own colour map, as gnuplot's palette.
+std::string sequentialPalette();
+
 /// Text between single quotes of gnuplot.
 std::string quotedForGnuplot(std::string text);
 

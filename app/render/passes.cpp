@@ -218,4 +218,26 @@ void SurfacePass::drawVessels(GLenum culled) const {
   glDisable(GL_CULL_FACE);
 }
 
+SheetPass::SheetPass() : program_("section"), layout_(makeVertexArray()) {}
+
+void SheetPass::set(const Sheet& sheet) {
+  picture_ = makePictureTexture(sheet.picture);
+  const auto put = [&](const char* name, const Vec3d& v) {
+    program_.set(name, static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0);
+  };
+  put("corner", sheet.corner);
+  put("across", sheet.across);
+  put("side", sheet.up);
+}
+
+void SheetPass::draw() const {
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  program_.use();
+  glBindTextureUnit(0, picture_.name());
+  glBindVertexArray(layout_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
 }  // namespace migiwa

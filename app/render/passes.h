@@ -148,6 +148,26 @@ class WaterPass {
   GlFramebuffer toOpaque_, toAll_, toEntries_, toExits_, toFarEntries_, toFarExits_, toColors_;
 };
 
+// A picture on a rectangle in space, as it is, without light: a section.
+
+struct Sheet {
+  Vec3d corner, across, up;  ///< its lower left corner and its sides (m)
+  Image picture;             ///< of alpha 0 where the sheet is not
+};
+
+class SheetPass {
+ public:
+  SheetPass();
+  /// From now on draws this one.
+  void set(const Sheet& sheet);
+  void draw() const;
+
+ private:
+  ShaderProgram program_;
+  GlTexture picture_;
+  GlVertexArray layout_;
+};
+
 // The plane under the scene: where it lies and how far apart its grid lines are.
 
 struct Ground {

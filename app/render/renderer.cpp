@@ -13,11 +13,6 @@ using Ink = std::array<float, 4>;
 constexpr Ink kWallInk{0.16F, 0.22F, 0.30F, 0.9F}, kSectionInk{0.16F, 0.22F, 0.30F, 1},
     kMouthInk{0.02F, 0.42F, 0.62F, 0.9F}, kDrainInk{0.72F, 0.27F, 0.12F, 0.9F};
 
-/// Towards the camera along the clip axis: +1 or -1.
-double clipSide(const Shot& shot) {
-  return shot.camera.eye[static_cast<Eigen::Index>(shot.clip.axis)] >= shot.clip.at ? 1 : -1;
-}
-
 FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderTarget& target) {
   const Projection projection = makeProjection(shot.camera, target.width(), target.height(), shot.scene);
   FrameUniforms uniforms{};
@@ -27,10 +22,10 @@ FrameUniforms makeUniforms(const Shot& shot, const Ground& ground, const RenderT
     uniforms.eye[static_cast<std::size_t>(i)] = static_cast<float>(shot.camera.eye[i]);
     uniforms.up[static_cast<std::size_t>(i)] = static_cast<float>(ground.up[i]);
   }
-  if (shot.clip.enabled) {
-    const double side = clipSide(shot);
-    uniforms.clipPlane[static_cast<std::size_t>(shot.clip.axis)] = static_cast<float>(side);
-    uniforms.clipPlane[3] = static_cast<float>(side * shot.clip.at);
+  if (const std::optional<CutPlane> cut = cutOf(shot)) {
+    for (Eigen::Index i = 0; i < 3; ++i)
+      uniforms.clipPlane[static_cast<std::size_t>(i)] = static_cast<float>(cut->normal[i]);
+    uniforms.clipPlane[3] = static_cast<float>(cut->at);
   } else {
     uniforms.clipPlane[3] = 1;
   }
@@ -61,10 +56,22 @@ std::vector<Float4> groundPatches(std::span<const WallMesh> meshes, const Vec3f&
 
 }  // namespace
 
+std::optional<CutPlane> cutOf(const Shot& shot) {
+  CutPlane plane;
+  if (shot.cut) {
+    plane = *shot.cut;
+  } else if (shot.clip.enabled) {
+    plane = {Vec3d::Unit(static_cast<Eigen::Index>(shot.clip.axis)), shot.clip.at};
+  } else {
+    return std::nullopt;
+  }
+  if (plane.normal.dot(shot.camera.eye) >= plane.at) return plane;
+  return CutPlane{-plane.normal, -plane.at};
+}
+
 bool isCut(const Shot& shot, const Vec3f& p) {
-  return shot.clip.enabled &&
-         clipSide(shot) * (static_cast<double>(p[static_cast<Eigen::Index>(shot.clip.axis)]) - shot.clip.at) >
-             0;
+  const std::optional<CutPlane> cut = cutOf(shot);
+  return cut && cut->normal.dot(p.cast<double>()) > cut->at;
 }
 
 Renderer::Renderer(const Surroundings& surroundings, const ColorMap& colors)
@@ -83,7 +90,7 @@ void Renderer::setWalls(const WallDrawing& walls) {
   meshes_ = walls.meshes;
   surfacePass_.set(meshes_);
   patches_ = groundPatches(meshes_, ground_.up.cast<float>());
-  sectionOf_ = {};
+  sectionOf_.reset();
   nodePass_.set(walls.nodes);
 }
 
@@ -108,23 +115,20 @@ void Renderer::collectPatches(const Shot& shot) {
 }
 
 void Renderer::drawSection(const Shot& shot, float width) {
-  if (!shot.clip.enabled || meshes_.empty()) return;
-  const double side = clipSide(shot);
-  if (!sectionOf_.enabled || sectionOf_.axis != shot.clip.axis || sectionOf_.at != shot.clip.at ||
-      sectionSide_ != side) {
-    // A hair behind the plane, on what it leaves.
-    const double at = shot.clip.at - side * 1e-5 * ground_.extent;
-    sectionPass_.set(
-        sectionLines(meshes_, static_cast<Eigen::Index>(shot.clip.axis), static_cast<float>(at)));
-    sectionOf_ = shot.clip;
-    sectionSide_ = side;
+  std::optional<CutPlane> cut = cutOf(shot);
+  if (!cut || meshes_.empty()) return;
+  // A hair behind the plane, on what it leaves.
+  cut->at -= 1e-5 * ground_.extent;
+  if (sectionOf_ != cut) {
+    sectionPass_.set(sectionLines(meshes_, *cut));
+    sectionOf_ = cut;
   }
   sectionPass_.draw(width, kSectionInk);
 }
 
 void Renderer::draw(const FrameView& frame, const Shot& asked, const RenderTarget& target) {
   Shot shot = asked;
-  if (frame.water) shot.clip.enabled = false;
+  if (frame.water) shot.clip.enabled = false, shot.cut.reset();
   const FrameUniforms uniforms = makeUniforms(shot, ground_, target);
   glNamedBufferSubData(uniforms_.name(), 0, sizeof(uniforms), &uniforms);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms_.name());
@@ -143,6 +147,7 @@ void Renderer::draw(const FrameView& frame, const Shot& asked, const RenderTarge
   // Water lets most of the light through that particles keep off.
   groundPass_.draw(spheres_, frame.water ? 0.3F * radius : radius, shownPatches_, shot.camera.eye);
   if (!frame.water) spherePass_.draw(spheres_, radius);
+  if (shot.sheet) drawSheet(shot);
   const float width = std::max(1.2F, static_cast<float>(target.height()) / 480);
   if (shot.walls && shot.nodes) nodePass_.draw();
   if (shot.walls && !shot.nodes) {
@@ -164,6 +169,15 @@ void Renderer::drawLines(float width) const {
   drainPass_.draw(width, kDrainInk);
 }
 
+void Renderer::drawSheet(const Shot& shot) {
+  if (!sheetPass_) sheetPass_.emplace();
+  if (shot.sheet != sheet_) {
+    sheet_ = shot.sheet;
+    sheetPass_->set(*sheet_);
+  }
+  sheetPass_->draw();
+}
+
 void Renderer::drawWater(const FrameView& frame, const Shot& shot, const FrameUniforms& uniforms,
                          const RenderTarget& target) {
   if (!waterPass_) waterPass_.emplace();
@@ -175,7 +189,9 @@ void Renderer::drawWater(const FrameView& frame, const Shot& shot, const FrameUn
                             static_cast<float>(ground_.center.dot(ground_.up))});
 }
 
-std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at) {
+std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, const CutPlane& plane) {
+  const Vec3f normal = plane.normal.cast<float>();
+  const auto at = static_cast<float>(plane.at);
   std::vector<LineSegment> lines;
   for (const WallMesh& mesh : meshes) {
     for (const auto& corners : mesh.surface.triangles) {
@@ -184,10 +200,9 @@ std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::I
       for (std::size_t k = 0; k < 3 && found < 2; ++k) {
         const Vec3f& from = mesh.surface.vertices[corners[k]];
         const Vec3f& to = mesh.surface.vertices[corners[(k + 1) % 3]];
-        if ((from[axis] < at) == (to[axis] < at)) continue;
-        Vec3f p = from + (at - from[axis]) / (to[axis] - from[axis]) * (to - from);
-        p[axis] = at;
-        ends[found++] = p;
+        const float before = normal.dot(from) - at, after = normal.dot(to) - at;
+        if ((before < 0) == (after < 0)) continue;
+        ends[found++] = from + before / (before - after) * (to - from);
       }
       if (found == 2) lines.push_back({ends[0], ends[1]});
     }

@@ -25,6 +25,13 @@ struct Surroundings {
   std::vector<LineSegment> mouths, drains;  ///< outlines of what gives fluid, and of what takes it
 };
 
+/// What lies beyond a plane towards the camera is cut away, in place of a clip plane.
+struct CutPlane {
+  Vec3d normal = Vec3d::UnitZ();  ///< unit
+  double at = 0;                  ///< from the origin along it (m)
+  bool operator==(const CutPlane&) const = default;
+};
+
 /// How one picture is taken.
 struct Shot {
   Camera camera;
@@ -32,12 +39,16 @@ struct Shot {
   ColorField color = ColorField::density;
   std::array<double, 2> colorRange{0, 1};
   bool walls = true;
-  bool nodes = false;               ///< the nodes of SLIM walls in place of their surfaces
-  Rect scene;                       ///< the part of the target that shows the scene
-  Vec3f waterLoss = Vec3f::Zero();  ///< of red, green and blue light in water (1/m)
+  bool nodes = false;                    ///< the nodes of SLIM walls in place of their surfaces
+  Rect scene;                            ///< the part of the target that shows the scene
+  Vec3f waterLoss = Vec3f::Zero();       ///< of red, green and blue light in water (1/m)
+  std::optional<CutPlane> cut{};         ///< nothing: `clip` is what counts
+  std::shared_ptr<const Sheet> sheet{};  ///< null: none
 };
 
-/// Whether the shot's clip plane cuts away what is at p.
+/// The plane that the shot is cut at, its normal towards the camera.
+std::optional<CutPlane> cutOf(const Shot& shot);
+/// Whether it cuts away what is at p.
 bool isCut(const Shot& shot, const Vec3f& p);
 
 struct FrameUniforms;
@@ -61,20 +72,22 @@ class Renderer {
   void collectPatches(const Shot& shot);
   void drawSection(const Shot& shot, float width);
   void drawLines(float width) const;
+  void drawSheet(const Shot& shot);
   void drawWater(const FrameView& frame, const Shot& shot, const FrameUniforms& uniforms,
                  const RenderTarget& target);
 
   Ground ground_;
   std::vector<WallMesh> meshes_;
-  std::vector<Float4> patches_;  ///< of the meshes that face the ground (GroundShadow)
-  ClipPlane sectionOf_;          ///< what sectionPass_ holds the outline of
-  double sectionSide_ = 0;
+  std::vector<Float4> patches_;        ///< of the meshes that face the ground (GroundShadow)
+  std::optional<CutPlane> sectionOf_;  ///< what sectionPass_ holds the outline of
   SpherePass spherePass_;
   SurfacePass surfacePass_;
   NodePass nodePass_;
   LinePass linePass_, sectionPass_, mouthPass_, drainPass_;
   GroundPass groundPass_;
   GlBuffer uniforms_;
+  std::optional<SheetPass> sheetPass_;             ///< once a sheet has been drawn
+  std::shared_ptr<const Sheet> sheet_;             ///< that sheetPass_ shows
   std::optional<WaterPass> waterPass_;             ///< once water has been drawn
   std::shared_ptr<const SurfaceMesh> water_;       ///< that waterPass_ shows
   std::shared_ptr<const WallDrawing> movedWalls_;  ///< that linePass_ shows; null: those of the start
@@ -94,9 +107,8 @@ struct FrameUniforms {
 };
 static_assert(sizeof(FrameUniforms) == 224);
 
-// Where a plane across an axis cuts surfaces: the outline of the cut.
+// Where a plane cuts surfaces: the outline of the cut.
 
-/// Segments at `at` (m) on the axis with number `axis`.
-std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, Eigen::Index axis, float at);
+std::vector<LineSegment> sectionLines(std::span<const WallMesh> meshes, const CutPlane& plane);
 
 }  // namespace migiwa

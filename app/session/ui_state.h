@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "core/scene/scene.h"
 #include "core/simulation/frame_view.h"
+#include "core/simulation/scene_section.h"
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
@@ -19,6 +21,7 @@ namespace migiwa {
 struct SceneEditor;
 struct WhatIfModel;
 class StageHistory;
+class UndoHistory;
 
 /// The past of the run that can be gone back to, and where in it the run is.
 struct TimeLineView {
@@ -57,6 +60,25 @@ struct RunStatus {
   TimeLineView line{};
 };
 
+/// A plane through the water with a field on it.
+struct SectionView {
+  bool shown = false;
+  SectionField field = SectionField::density;
+  SectionDivisor divisor = SectionDivisor::sum;
+  bool free = false;  ///< at an angle: across `normal` in place of the axis
+  Axis axis = Axis::z;
+  Vec3d normal{0.5, 0, 1};  ///< of some length
+  double at = 0;            ///< from the origin along the unit normal (m)
+  bool cut = true;          ///< what is before the plane is cut away
+  bool lines = true;        ///< of equal values
+  bool fit = false;         ///< colours reach from the least to the largest value
+
+  bool operator==(const SectionView&) const = default;
+  Vec3d direction() const {
+    return free ? normal.normalized() : Vec3d(Vec3d::Unit(static_cast<Eigen::Index>(axis)));
+  }
+};
+
 /// How the scene is looked at.
 struct ViewState {
   Camera camera;
@@ -66,6 +88,9 @@ struct ViewState {
   bool nodes = false;  ///< of SLIM walls, in place of their surfaces
   bool panels = true;
   bool water = false;  ///< the fluid's surface in place of its particles
+  SectionView section{};
+
+  bool operator==(const ViewState&) const = default;
 };
 
 /// A place on the time line.
@@ -80,8 +105,9 @@ struct UiCommands {
   bool stepBack = false;
   std::optional<TimePlace> goTo;
   bool settings = false;  ///< the settings were changed
-  bool savePicture = false;
+  bool savePicture = false, saveSection = false;
   bool saveState = false, loadState = false;
+  int undo = 0;  ///< so many changes are taken back; below 0: done again
 };
 
 // "Looking in": one particle, its neighbours, and what walls take of its support.
@@ -121,6 +147,17 @@ struct InspectModel {
   std::optional<WallAnswers> walls;               ///< the last that is known
 };
 
+/// The section that is shown: of which field, and when.
+struct SectionModel {
+  std::shared_ptr<const SectionRaster> raster;  ///< null: none is known yet
+  SectionView of;                               ///< as which it was asked for
+  double time = 0;                              ///< (s)
+  std::string fault;                            ///< why there is none
+  bool underWay = false;
+  std::string note;              ///< what became of the last request to keep it
+  std::optional<Vec3d> pointed;  ///< place on it under the mouse (m)
+};
+
 // The gallery: what can be opened.
 
 struct GalleryEntry {
@@ -153,7 +190,9 @@ struct PanelModel {
   SceneEditor* editor;    ///< null: the scene's text is not offered
   WhatIfModel* whatIf;    ///< null: not offered
   GalleryModel* gallery;  ///< null: not offered
+  SectionModel* section;  ///< null: not offered
   const StageHistory& history;
+  const UndoHistory& undo;
 };
 
 // "What if": error and cost of the present state with other settings beside those of now, as points in one
@@ -189,11 +228,13 @@ struct SceneEditor {
   std::string fileName;  ///< whose text it is
   std::string text;
   std::string known;          ///< what the file holds
+  std::string applied;        ///< the text that was last asked to be taken over
   std::vector<Fault> faults;  ///< of the last text that was tried
   std::string note;           ///< one line on what became of the last request
   std::string saveName;
   bool open = false;
   bool apply = false, save = false, revert = false;  ///< what the user asks for; cleared by whoever does it
+  std::optional<std::string> restore;                ///< a text to be taken over in place of what is shown
 
   int goTo = 0;             ///< line to put the caret on in the next frames; 0: none
   int caretLine = 1;        ///< where the caret is

@@ -3,11 +3,46 @@
 #include <string>
 
 #include "app/session/ui_state.h"
+#include "app/session/undo.h"
 #include "app/ui/ui.h"
 #include "app/ui/widgets.h"
 #include "core/base/messages.h"
 
 namespace migiwa {
+
+void changesPanel(PanelModel& model) {
+  constexpr std::size_t kListed = 6;
+  const float width = buttonWidth(2);
+  ImGui::BeginDisabled(!model.undo.canUndo());
+  if (ImGui::Button("Undo", {width, 0})) model.commands.undo = 1;
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Control and Z");
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!model.undo.canRedo());
+  if (ImGui::Button("Redo", {width, 0})) model.commands.undo = -1;
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Control and Y, or control, shift and Z");
+  const std::vector<std::string> done = model.undo.done(), undone = model.undo.undone();
+  if (done.empty() && undone.empty()) faintText("None yet");
+  // The oldest of those that fit is on top, what was taken back below.
+  const std::size_t listed = std::min(done.size(), kListed);
+  if (listed < done.size()) faintText(std::to_string(done.size() - listed) + " before these");
+  for (std::size_t k = listed; k-- > 0;) {
+    ImGui::PushID(static_cast<int>(k));
+    if (ImGui::Selectable(done[k].c_str())) model.commands.undo = static_cast<int>(k) + 1;
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s\nA click takes it back, with all that came after it", done[k].c_str());
+    ImGui::PopID();
+  }
+  for (std::size_t k = 0; k < std::min(undone.size(), kListed); ++k) {
+    ImGui::PushID(-1 - static_cast<int>(k));
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    if (ImGui::Selectable(undone[k].c_str())) model.commands.undo = -1 - static_cast<int>(k);
+    ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s\nA click does it again", undone[k].c_str());
+    ImGui::PopID();
+  }
+}
 
 void boundaryPanel(PanelModel& model) {
   if (wallRows(model.settings.boundary)) model.commands.settings = true;

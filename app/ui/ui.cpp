@@ -23,7 +23,7 @@ struct KeyPair {
   ImGuiKey imgui;
   Key key;
 };
-constexpr std::array<KeyPair, 18> kKeys{{
+constexpr std::array<KeyPair, 19> kKeys{{
     {ImGuiKey_Tab, Key::tab},
     {ImGuiKey_LeftArrow, Key::left},
     {ImGuiKey_RightArrow, Key::right},
@@ -41,6 +41,7 @@ constexpr std::array<KeyPair, 18> kKeys{{
     {ImGuiKey_C, Key::c},
     {ImGuiKey_V, Key::v},
     {ImGuiKey_X, Key::x},
+    {ImGuiKey_Y, Key::y},
     {ImGuiKey_Z, Key::z},
 }};
 
@@ -168,6 +169,8 @@ void Ui::panels(PanelModel& model, int height) {
             [&](PanelModel& whole) { effectPanel(whole, effect); });
   }
   section("View", lines > 33, bold, model, viewPanel);
+  if (model.section != nullptr) section("Section", lines > 52, bold, model, sectionPanel);
+  section("Changes", lines > 56, bold, model, changesPanel);
   section("Energy", lines > 58, bold, model, energyPanel);
   if (!model.frame.gauges.empty()) section("Gauges", true, bold, model, gaugesPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
@@ -179,6 +182,10 @@ void Ui::inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& ori
                    const Projection& projection, const Rect& area) const {
   inspectorOverlay(model, frame, projection, area);
   inspectorCard(model, frame, origin, area);
+}
+
+void Ui::sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin) const {
+  migiwa::sectionPointer(model, info, origin);
 }
 
 void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
@@ -205,6 +212,10 @@ int Ui::legendHeight() const {
 void Ui::end(bool draw) {
   ImGui::Render();
   if (draw) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Ui::busy() const {
+  return ImGui::IsAnyItemActive();
 }
 
 bool Ui::wantsMouse() const {

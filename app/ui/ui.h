@@ -51,6 +51,8 @@ class Ui {
   /// `origin`: what positions are relative to (m).
   void inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,
                  const Projection& projection, const Rect& area) const;
+  /// The value of the section under the mouse; `origin` as for the inspector.
+  void sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin) const;
   void caption(const Caption& caption, const Rect& area) const;
   void legend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
               const Rect& area) const;
@@ -59,6 +61,8 @@ class Ui {
   /// Ends the frame and draws it, or only lays it out.
   void end(bool draw);
 
+  /// Whether a widget is being held or typed into.
+  bool busy() const;
   /// Whether mouse and keyboard belong to a panel in this frame.
   bool wantsMouse() const;
   bool wantsKeyboard() const;

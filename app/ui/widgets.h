@@ -53,6 +53,10 @@ void effectPanel(PanelModel& model, NamedEffect& effect);
 void viewPanel(PanelModel& model);
 /// Needs the model's whatIf.
 void whatIfPanel(PanelModel& model);
+/// What was changed, to be taken back and done again.
+void changesPanel(PanelModel& model);
+/// Needs the model's section.
+void sectionPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
 /// Energies over the run, against what was given.
 void energyPanel(PanelModel& model);
@@ -72,6 +76,9 @@ void inspectorOverlay(const InspectModel& model, const FrameInfo& frame, const P
                       const Rect& area);
 /// In the upper right corner of `area`: its values, and gamma by every method.
 void inspectorCard(InspectModel& model, const FrameInfo& frame, const Vec3d& origin, const Rect& area);
+
+/// What the section has under the mouse.
+void sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin);
 
 // The fonts of panels and pictures: DejaVu Sans, with the Greek and the signs that formulas need.
 

@@ -77,11 +77,6 @@ void Viewer::inspect(const FrameView& frame, const InputState& input, const Rect
       std::hypot(input.mouseX - (*pressedAt_)[0], input.mouseY - (*pressedAt_)[1]) < kClickPixels;
   if (released) pressedAt_.reset();
 
-  // Where the mouse happens to be when the window opens, it points at nothing.
-  const bool moved = last_.mouseInside && input.mouseInside &&
-                     (input.mouseX != last_.mouseX || input.mouseY != last_.mouseY);
-  mouseUsed_ = mouseUsed_ || moved || pressed;
-
   model.hovered.reset();
   const bool still =
       !input.down(MouseButton::left) && !input.down(MouseButton::right) && !input.down(MouseButton::middle);

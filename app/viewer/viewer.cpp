@@ -58,6 +58,7 @@ Viewer::Viewer(const Scene& scene, WallDrawing walls, const ViewerOptions& optio
       renderer_(surroundings(scene, std::move(walls)), options.colors),
       ui_(options.scale) {
   takeView();
+  undo_.begin(undoable());
 }
 
 void Viewer::takeView() {
@@ -67,9 +68,11 @@ void Viewer::takeView() {
   view_.color = scene_.view.color;
   // A cut that is switched on later begins in the middle.
   if (!view_.clip.enabled) view_.clip.at = bounds_.center()[static_cast<Eigen::Index>(view_.clip.axis)];
+  // So does a section.
+  if (!view_.section.shown) view_.section.axis = view_.clip.axis, view_.section.at = view_.clip.at;
 }
 
-void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) {
+bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) {
   const bool viewChanged = !(scene.view == scene_.view);
   scene_ = scene;
   settings_ = {scene.solver, scene.boundary, scene.effects};
@@ -79,6 +82,20 @@ void Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) 
     renderer_ = Renderer(surroundings(scene, *std::move(walls)), options_.colors);
   }
   if (viewChanged) takeView();
+  const bool restores = afterwards_.has_value();
+  if (restores) {
+    settings_ = afterwards_->settings;
+    view_ = afterwards_->view;
+    afterwards_.reset();
+  }
+  // What a file brings that was changed elsewhere cannot be taken back here.
+  if (restores || awaitsText_) {
+    undo_.follow(undoable());
+  } else {
+    undo_.begin(undoable());
+  }
+  awaitsText_ = false;
+  return restores;
 }
 
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
@@ -98,10 +115,19 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
 
   ui_.begin(width, height, input);
   // What is drawn over the picture is drawn for the camera of the picture.
+  // Where the mouse happens to be when the window opens, it points at nothing.
+  const bool moved = last_.mouseInside && input.mouseInside &&
+                     (input.mouseX != last_.mouseX || input.mouseY != last_.mouseY);
+  mouseUsed_ = mouseUsed_ || moved || (input.down(MouseButton::left) && !last_.down(MouseButton::left));
   moveCamera(input, area);
+  moveSection(input, area);
   inspect(frame, input, area);
   UiCommands commands = drawUi(frame, run, area);
   if (!ui_.wantsKeyboard()) keys(input, run, commands);
+  watchText();
+  const bool held = std::any_of(input.buttons.begin(), input.buttons.end(), [](bool down) { return down; });
+  undo_.look(undoable(), held || ui_.busy(), input.seconds);
+  undo(commands);
   last_ = input;
 
   target_->beginScene();
@@ -114,7 +140,8 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
 Shot Viewer::shot(const Rect& area) const {
   const Look& look = scene_.view.look;
   return {view_.camera, view_.clip,  view_.color, colorRange(view_.color),
-          view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth)};
+          view_.walls,  view_.nodes, area,        lossOf(look.waterColor, look.waterDepth),
+          sectionCut(), sheet_};
 }
 
 FrameView Viewer::asShown(const FrameView& frame) const {
@@ -150,19 +177,42 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
     above.height -= ui_.legendHeight();
     ui_.legend(NodePass::legend(), nodes.range(), makeWarmColorMap(), above);
   }
+  if (sheet_) drawSectionLegend(area);
   if (options_.inspect != nullptr)
     ui_.inspector(*options_.inspect, frame.info, scene_.origin,
                   makeProjection(view_.camera, target_->width(), target_->height(), area), area);
   if (view_.panels) {
-    PanelModel model{
-        frame.info,     run,      options_.timings, scene_,          bounds_,          settings_, view_,
-        !nodes.empty(), commands, options_.editor,  options_.whatIf, options_.gallery, history_};
+    PanelModel model{frame.info,
+                     run,
+                     options_.timings,
+                     scene_,
+                     bounds_,
+                     settings_,
+                     view_,
+                     !nodes.empty(),
+                     commands,
+                     options_.editor,
+                     options_.whatIf,
+                     options_.gallery,
+                     options_.section,
+                     history_,
+                     undo_};
     ui_.panels(model, target_->height());
     if (!run.line.branches.empty()) ui_.timeLine(model, area);
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
   if (options_.gallery != nullptr && options_.gallery->open) drawGallery(area);
   return commands;
+}
+
+void Viewer::drawSectionLegend(const Rect& area) {
+  const ColorFieldInfo info = sectionInfo();
+  Rect above = area;
+  const NodePass& nodes = renderer_.nodes();
+  if (!view_.water) above.height -= ui_.legendHeight();
+  if (view_.walls && view_.nodes && !nodes.empty()) above.height -= ui_.legendHeight();
+  ui_.legend(info, {info.low, info.high}, options_.colors, above);
+  ui_.sectionPointer(*options_.section, info, scene_.origin);
 }
 
 /// The pictures of entries become textures when they are first to be seen.
@@ -233,11 +283,49 @@ void Viewer::moveCamera(const InputState& input, const Rect& area) {
                           std::tan(view_.camera.fovDegrees * std::numbers::pi / 360);
     pan(view_.camera, dx * height, -dy * height);
   }
-  if (free && input.wheel != 0) zoom(view_.camera, std::pow(0.9, static_cast<double>(input.wheel)));
+  const bool movesSection = input.control && options_.section != nullptr && view_.section.shown;
+  if (free && input.wheel != 0 && !movesSection)
+    zoom(view_.camera, std::pow(0.9, static_cast<double>(input.wheel)));
+}
+
+Undoable Viewer::undoable() const {
+  const SceneEditor* editor = options_.editor;
+  return {settings_, view_, editor != nullptr ? editor->text : "", editor != nullptr ? editor->applied : ""};
+}
+
+/// Notes which text is asked to be taken over in this frame.
+void Viewer::watchText() {
+  if (options_.editor == nullptr) return;
+  SceneEditor& editor = *options_.editor;
+  if (!editor.apply && !editor.save && !editor.revert) return;
+  editor.applied = editor.revert ? editor.known : editor.text;
+  awaitsText_ = true;
+}
+
+void Viewer::undo(UiCommands& commands) {
+  for (; commands.undo > 0 && undo_.canUndo(); --commands.undo) restore(undo_.undo(), commands);
+  for (; commands.undo < 0 && undo_.canRedo(); ++commands.undo) restore(undo_.redo(), commands);
+  commands.undo = 0;
+}
+
+void Viewer::restore(const Undoable& state, UiCommands& commands) {
+  settings_ = state.settings;
+  view_ = state.view;
+  commands.settings = true;
+  if (options_.editor == nullptr) return;
+  SceneEditor& editor = *options_.editor;
+  if (editor.text != state.text) editor.replaceText(state.text);
+  if (editor.applied == state.applied) return;
+  editor.applied = state.applied;
+  editor.restore = state.applied;
+  // The scene comes with settings and a view of its own.
+  afterwards_ = state;
 }
 
 void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& commands) {
   const auto pressed = [&](Key key) { return input.down(key) && !last_.down(key); };
+  if (input.control && !input.alt && pressed(Key::z)) commands.undo = input.shift ? -1 : 1;
+  if (input.control && !input.alt && pressed(Key::y)) commands.undo = -1;
   if (input.control || input.alt) return;
   if (pressed(Key::space)) (run.playing ? commands.pause : commands.play) = true;
   if (pressed(Key::right)) commands.step = true;

@@ -14,6 +14,7 @@
 #include "app/render/renderer.h"
 #include "app/session/session.h"
 #include "app/session/ui_state.h"
+#include "app/session/undo.h"
 #include "app/ui/ui.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
@@ -37,6 +38,8 @@ struct ViewerOptions {
   InspectModel* inspect = nullptr;
   /// What can be opened; null: not offered. Outlives the viewer.
   GalleryModel* gallery = nullptr;
+  /// The section through the water; null: not offered. Outlives the viewer.
+  SectionModel* section = nullptr;
   bool water = false;  ///< ViewState::water to begin with
 };
 
@@ -49,7 +52,8 @@ class Viewer {
 
   /// Takes over a changed scene. The camera and what else a person has turned stay, unless the scene's own
   /// view has changed. `walls`: of a scene that begins anew; nothing: the same ones, only parameters changed.
-  void replaceScene(const Scene& scene, std::optional<WallDrawing> walls);
+  /// Returns whether settings() are others than the scene's: those from before a text that was taken back.
+  bool replaceScene(const Scene& scene, std::optional<WallDrawing> walls);
 
   /// Draws one frame and returns what the user asked for.
   UiCommands frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
@@ -62,7 +66,11 @@ class Viewer {
 
   const Settings& settings() const { return settings_; }
   /// Shows these from now on: those that the panels asked for were refused.
-  void setSettings(const Settings& settings) { settings_ = settings; }
+  void setSettings(const Settings& settings) {
+    settings_ = settings;
+    undo_.follow(undoable());
+  }
+  const UndoHistory& changes() const { return undo_; }
   ViewState& view() { return view_; }
   /// The particle that is looked into; null where none can be.
   const InspectModel* inspected() const { return options_.inspect; }
@@ -75,13 +83,21 @@ class Viewer {
  private:
   UiCommands drawUi(const FrameView& frame, const RunStatus& run, const Rect& area);
   void drawGallery(const Rect& area);
+  void drawSectionLegend(const Rect& area);
   /// With the water's surface only where it is to be seen.
   FrameView asShown(const FrameView& frame) const;
   Shot shot(const Rect& area) const;
   void inspect(const FrameView& frame, const InputState& input, const Rect& area);
   bool hidden(const FrameView& frame, std::size_t particle, const InputState& input, const Rect& area) const;
   void lookInto(const FrameView& frame);
+  ColorFieldInfo sectionInfo() const;
+  void moveSection(const InputState& input, const Rect& area);
+  std::optional<CutPlane> sectionCut() const;
   void moveCamera(const InputState& input, const Rect& area);
+  Undoable undoable() const;
+  void watchText();
+  void undo(UiCommands& commands);
+  void restore(const Undoable& state, UiCommands& commands);
   void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
   void takeView();
@@ -96,8 +112,16 @@ class Viewer {
   Renderer renderer_;
   Ui ui_;
   StageHistory history_;
+  UndoHistory undo_;
+  bool awaitsText_ = false;             ///< a text is being taken over
+  std::optional<Undoable> afterwards_;  ///< what is to be in force once one is that was taken back to
   std::vector<GlTexture> galleryPictures_;
   std::optional<RenderTarget> target_;
+  /// What the section is drawn as, and what it was made of.
+  std::shared_ptr<const Sheet> sheet_;
+  std::shared_ptr<const SectionRaster> sheetRaster_;
+  std::array<double, 2> sheetRange_{};
+  bool sheetLines_ = false;
   InputState last_;
   bool laidOut_ = false;
   bool draggingScene_ = false, mouseUsed_ = false;
@@ -151,6 +175,8 @@ struct WindowOptions {
   std::size_t past = TimeLine::kLimit;  ///< bytes for the states of the time line
   /// Keeps a picture that the user asked for; called on a thread of its own, for one picture after the other.
   std::function<void(const Image&)> savePicture;
+  /// The same for a section as CSV.
+  std::function<void(const std::string&)> saveSection{};
   /// Told of each frame that has been drawn, on the window's thread.
   std::function<void(const DrawnFrame&)> drawn{};
   bool water = false;  ///< shows the water's surface to begin with

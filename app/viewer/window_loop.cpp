@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "app/platform/context.h"
 #include "app/session/probe.h"
+#include "app/session/section_session.h"
 #include "app/session/session.h"
 #include "app/viewer/viewer.h"
 #include "core/base/messages.h"
@@ -41,12 +43,12 @@ void applyRequest(const UiCommands& commands, const Settings& settings, Simulati
   if (commands.goTo) simulation.goTo(commands.goTo->branch, commands.goTo->time);
 }
 
-/// Begins when the picture before it is kept, so that no two take the same name. An empty future: none was.
-std::future<void> keepPicture(std::future<void> before, const WindowOptions& options, Image picture) {
-  return std::async(std::launch::async, [before = std::move(before), keep = options.savePicture,
-                                         picture = std::move(picture)]() mutable {
+/// Begins when what was to be kept before is, so that no two files take the same name. An empty future:
+/// nothing was.
+std::future<void> keep(std::future<void> before, std::function<void()> write) {
+  return std::async(std::launch::async, [before = std::move(before), write = std::move(write)]() mutable {
     if (before.valid()) before.get();
-    keep(picture);
+    write();
   });
 }
 
@@ -154,6 +156,8 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
   WhatIfSession trials(options.threads);
   InspectModel inspect;
   ProbeSession probes;
+  SectionModel section;
+  SectionSession sections(options.threads);
   GalleryModel gallery;
   if (options.gallery) gallery.entries = options.gallery();
   Opening opening(options, gallery, left);
@@ -163,6 +167,7 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
                  .whatIf = &whatIf,
                  .inspect = &inspect,
                  .gallery = options.open ? &gallery : nullptr,
+                 .section = &section,
                  .water = options.water});
   if (options.playing) simulation->play();
 
@@ -180,7 +185,7 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
       if (std::optional<SceneChange> change = session.poll()) {
         tellEditor(*change, session, editor);
         if (change->scene) trials.forget(whatIf, *simulation);
-        if (change->simulation) probes.forget(inspect);
+        if (change->simulation) probes.forget(inspect), sections.forget(section);
         if (change->scene) applyChange(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
@@ -205,6 +210,8 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
       redraws = kFramesAfterInput;
     }
     if (simulation->takeFrame(frame)) redraws = std::max(redraws, 1);
+    if (sections.poll(section, viewer.view().section, simulation->scene(), viewer.settings(), frame.view()))
+      redraws = std::max(redraws, 1);
     const auto [width, height] = window.framebufferSize();
     last = Clock::now();
     if ((redraws == 0 && !options.frames) || width == 0 || height == 0) continue;
@@ -216,12 +223,20 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
     window.swap();
     if (options.drawn) options.drawn({shown, run, viewer});
     applyRequest(commands, viewer.settings(), *simulation);
-    simulation->watchPressure(viewer.view().color == ColorField::pressure);
+    const SectionView& cut = viewer.view().section;
+    simulation->watchPressure(viewer.view().color == ColorField::pressure ||
+                              (cut.shown && cut.field == SectionField::pressure));
     simulation->watchWater(viewer.view().water);
     keepState(commands, session, *simulation);
     applyRequest(editor, session, viewer.settings(), viewer.view());
     if (commands.savePicture && options.savePicture)
-      saving = keepPicture(std::move(saving), options, viewer.picture());
+      saving = keep(std::move(saving),
+                    [write = options.savePicture, picture = viewer.picture()] { write(picture); });
+    if (commands.saveSection && options.saveSection && section.raster)
+      saving = keep(std::move(saving), [write = options.saveSection, raster = section.raster,
+                                        origin = simulation->scene().origin, field = section.of.field] {
+        write(sectionCsv(*raster, origin, kSectionFieldNames[static_cast<std::size_t>(field)]));
+      });
     redraws = std::max(redraws - 1, 0);
     ++drawn;
   }
@@ -309,13 +324,14 @@ void takeSaved(const SaveRequest& saved, const SceneSession& session, SceneEdito
 SceneEditor makeEditor(const SceneSession& session) {
   SceneEditor editor;
   editor.fileName = editor.saveName = session.file().filename().string();
-  editor.text = editor.known = session.fileText();
+  editor.text = editor.known = editor.applied = session.fileText();
   return editor;
 }
 
 void tellEditor(const SceneChange& change, const SceneSession& session, SceneEditor& editor) {
   if (change.saved) takeSaved(*change.saved, session, editor);
   if (change.fromFile() && change.fileText) takeFileText(*change.fileText, editor.edited(), editor);
+  if (change.fromFile() && change.scene) editor.applied = session.fileText();
   listFaults(change.faults, session, editor);
   if (change.source == SceneChange::Source::save && !change.saved) {
     editor.note = "not saved: " + counted(change.faults.size());
@@ -339,6 +355,10 @@ void applyRequest(SceneEditor& editor, SceneSession& session, const Settings& se
     editor.note = "reading ...";
     session.apply(editor.text);
   }
+  if (const std::optional<std::string> text = std::exchange(editor.restore, std::nullopt)) {
+    editor.note = "reading ...";
+    session.apply(*text);
+  }
   if (std::exchange(editor.save, false)) {
     editor.note = "saving ...";
     session.saveAs({editor.saveName, editor.text, settings, view});
@@ -358,7 +378,7 @@ void applyChange(SceneChange& change, SceneSession& session, Viewer& viewer,
   }
   const bool playing = simulation->status().playing;
   session.retire(std::exchange(simulation, std::move(change.simulation)));
-  viewer.replaceScene(simulation->scene(), simulation->walls());
+  if (viewer.replaceScene(simulation->scene(), simulation->walls())) simulation->apply(viewer.settings());
   if (playing) simulation->play();
 }
 

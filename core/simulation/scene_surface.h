@@ -12,6 +12,9 @@
 
 namespace migiwa {
 
+/// The walls of a scene as a run meets them, with distance grids where those pay.
+Boundary wallsOf(const Scene& scene, ThreadPool& pool);
+
 class SceneSurface {
  public:
   /// Prepares the walls. Keeps a reference to the pool. Whatever the scene's handling of walls, the surface

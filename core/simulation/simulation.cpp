@@ -19,20 +19,10 @@
 #include "core/simulation/scene_surface.h"
 #include "core/simulation/state.h"
 #include "core/solver/parameters.h"
-#include "core/walls/gridded.h"
 
 namespace migiwa {
 
 namespace {
-
-Boundary wallsOf(const Scene& scene, ThreadPool& pool) {
-  const Activity activity("measuring distances to the walls");
-  const auto support = static_cast<float>(scene.supportRadius());
-  Boundary walls(
-      withDistanceGrids(scene.surfaces, support, pool, scene.file.string() + ":/boundary/surfaces"));
-  walls.indexWalls(support);
-  return walls;
-}
 
 /// Of the fluid along gravity (m); 0 without either.
 double heightOf(const StepState& state) {
@@ -307,27 +297,6 @@ void requireSteppable(const BoundaryParameters& boundary, const std::filesystem:
                    "expected a method that is quick enough for every step, such as \"auto\", found \"" +
                        std::string(gammaMethodNames()[method]) +
                        "\", a reference for migiwa gamma alone; --set /boundary/gamma/method=auto helps");
-}
-
-SceneSurface::SceneSurface(const Scene& scene, SurfaceOptions options, ThreadPool& pool)
-    : options_(std::move(options)),
-      pool_(pool),
-      spacing_(static_cast<float>(scene.particleSpacing)),
-      support_(static_cast<float>(scene.supportRadius())),
-      kernel_(scene.solver.kernel),
-      boundary_(wallsOf(scene, pool)) {
-  if (boundary_.empty()) return;
-  gamma_ = makeGammaMethod(scene.boundary.gammaMethod, gammaContextOf(scene, boundary_, pool));
-}
-
-SurfaceMesh SceneSurface::mesh(std::span<const Float4> positions, std::span<const Float4> velocities,
-                               double time, StageTimes* times) {
-  if (boundary_.moves()) {
-    boundary_.moveTo(time, time);
-    gamma_.method->wallsMoved();
-  }
-  return liquidSurface({positions, velocities, spacing_, support_, kernel_},
-                       {&boundary_, gamma_.method.get()}, options_, pool_, times);
 }
 
 }  // namespace migiwa

@@ -91,7 +91,7 @@ TEST_F(PanelsTest, HandlingOfWallsIsPickedFromItsListAndSwitchedByItsKey) {
 
 TEST_F(PanelsTest, MaxIterationsFollowTheirSlider) {
   const int before = viewer_.settings().solver.maxIterations;
-  EXPECT_TRUE(click(300, 224).settings);
+  EXPECT_TRUE(click(280, 224).settings);
   EXPECT_GT(viewer_.settings().solver.maxIterations, before);
   EXPECT_GE(viewer_.settings().solver.maxIterations, viewer_.settings().solver.minIterations);
 }

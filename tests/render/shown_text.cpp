@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <vector>
 
 #include <imgui.h>
 
@@ -21,13 +22,21 @@ std::map<Place, char> letters() {
   return result;
 }
 
-}  // namespace
+/// The text, and of each letter the middle (pixels).
+struct Shown {
+  std::string text;
+  std::vector<std::array<float, 2>> places;
+  void add(char letter, float x, float y) {
+    text += letter;
+    places.push_back({x, y});
+  }
+};
 
-std::string shownText() {
+Shown shown() {
   // A space is wider.
   const float adjoining = 0.2F * ImGui::GetIO().Fonts->Fonts.front()->FontSize;
   const std::map<Place, char> known = letters();
-  std::string text;
+  Shown all;
   const ImDrawData& drawn = *ImGui::GetDrawData();
   for (int list = 0; list < drawn.CmdListsCount; ++list) {
     const ImVector<ImDrawVert>& corners = drawn.CmdLists[list]->VtxBuffer;
@@ -38,14 +47,28 @@ std::string shownText() {
       if (letter == known.end()) continue;
       const float gap = first.pos.x - end.x;
       const bool sameLine = first.pos.y < end.y;
-      if (!sameLine || gap < -adjoining || gap > adjoining) text += ' ';
-      text += letter->second;
+      const float x = 0.5F * (first.pos.x + last.pos.x), y = 0.5F * (first.pos.y + last.pos.y);
+      if (!sameLine || gap < -adjoining || gap > adjoining) all.add(' ', x, y);
+      all.add(letter->second, x, y);
       end = last.pos;
       k += 3;
     }
-    text += ' ';
+    all.add(' ', end.x, end.y);
   }
-  return text;
+  return all;
+}
+
+}  // namespace
+
+std::string shownText() {
+  return shown().text;
+}
+
+std::optional<std::array<float, 2>> placeOfText(const std::string& word) {
+  const Shown all = shown();
+  const std::size_t at = all.text.find(' ' + word + ' ');
+  if (at == std::string::npos) return std::nullopt;
+  return all.places[at + 1 + word.size() / 2];
 }
 
 }  // namespace migiwa
