@@ -172,12 +172,12 @@ void SceneSession::ask(Request request) {
   wake_.notify_one();
 }
 
-void SceneSession::apply(std::string text) {
-  ask({SceneChange::Source::text, std::move(text), std::nullopt});
+void SceneSession::apply(std::string text, int number) {
+  ask({SceneChange::Source::text, std::move(text), std::nullopt, number});
 }
 
-void SceneSession::saveAs(SaveRequest request) {
-  ask({SceneChange::Source::save, {}, std::move(request)});
+void SceneSession::saveAs(SaveRequest request, int number) {
+  ask({SceneChange::Source::save, {}, std::move(request), number});
 }
 
 void SceneSession::retire(std::unique_ptr<SimulationThread> simulation) {
@@ -234,6 +234,7 @@ SceneSession::Answer SceneSession::applyRequest(Request request, bool last) {
   Answer answer;
   SceneChange& change = answer.change;
   change.source = request.source;
+  change.request = request.number;
   std::string text = std::move(request.text);
   if (request.save) {
     change.faults = faultsOf(reader_.file, request.save->text, [&] {

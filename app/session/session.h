@@ -252,6 +252,7 @@ struct TextFault : Fault {
 struct SceneChange {
   enum class Source { file, text, save };  ///< the watched files, apply(), saveAs()
   Source source = Source::file;
+  int request = 0;                ///< the number of whoever asked for it; 0: the watched files
   std::vector<TextFault> faults;  ///< none: the scene is valid
   std::optional<Scene> scene;     ///< the valid one
   /// The new scene's simulation at its start; null when the one that runs can take the change over.
@@ -276,11 +277,11 @@ class SceneSession {
   /// Has the files looked at, and says what became of a change once that is known; from then on the session's
   /// file is that of the change.
   std::optional<SceneChange> poll();
-  /// Takes a text in place of the file's; poll() tells what became of it.
-  void apply(std::string text);
+  /// Takes a text in place of the file's; poll() tells what became of it, with that number.
+  void apply(std::string text, int number = 0);
   /// Writes the text, with settings and view, into the scene's folder, and goes on with that file. poll()
   /// tells what became of it: with faults in the text or the name nothing is written.
-  void saveAs(SaveRequest request);
+  void saveAs(SaveRequest request, int number = 0);
   /// Ends a simulation that is no longer needed, when its frame is done.
   void retire(std::unique_ptr<SimulationThread> simulation);
 
@@ -302,6 +303,7 @@ class SceneSession {
     SceneChange::Source source = SceneChange::Source::file;
     std::string text;                 ///< to be applied
     std::optional<SaveRequest> save;  ///< to be saved
+    int number = 0;
   };
   struct Answer {
     SceneChange change;

@@ -229,6 +229,7 @@ struct SceneEditor {
   std::string text;
   std::string known;          ///< what the file holds
   std::string applied;        ///< the text that was last asked to be taken over
+  int asked = 0;              ///< how often one was
   std::vector<Fault> faults;  ///< of the last text that was tried
   std::string note;           ///< one line on what became of the last request
   std::string saveName;

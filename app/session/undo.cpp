@@ -60,6 +60,15 @@ std::string viewChange(const ViewState& before, const ViewState& now) {
   return before.camera == now.camera ? "" : "camera";
 }
 
+/// `state` with what differs between the two as it is in `to`: all of it where they are of different scenes.
+Undoable taken(Undoable state, const Undoable& from, const Undoable& to) {
+  if (from.applied != to.applied) return to;
+  if (!same(from.settings, to.settings)) state.settings = to.settings;
+  if (!(from.view == to.view)) state.view = to.view;
+  if (from.text != to.text) state.text = to.text;
+  return state;
+}
+
 }  // namespace
 
 bool Undoable::operator==(const Undoable& other) const {
@@ -89,7 +98,7 @@ void UndoHistory::begin(Undoable now) {
 
 void UndoHistory::look(const Undoable& now, bool busy, double seconds) {
   // Where nothing happens no frame is drawn: what was at rest for long is a change before this one.
-  if (!busy_ && !(seen_ == last_) && still_ + seconds >= kPause) push(Undoable(seen_));
+  if (!busy_ && pending() && still_ + seconds >= kPause) push(Undoable(seen_));
   const bool changed = !(now == seen_);
   still_ = changed || busy ? 0 : still_ + seconds;
   seen_ = now;
@@ -103,45 +112,48 @@ void UndoHistory::look(const Undoable& now, bool busy, double seconds) {
 }
 
 void UndoHistory::push(const Undoable& now) {
-  done_.push_back({changeName(last_, now), last_});
+  done_.push_back({changeName(last_, now), last_, now});
   if (done_.size() > kMost) done_.pop_front();
   undone_.clear();
   last_ = now;
 }
 
 void UndoHistory::follow(const Undoable& now) {
+  if (pending()) push(Undoable(seen_));
   last_ = seen_ = now;
   still_ = 0;
-  busy_ = false;
-  while (!done_.empty() && done_.back().before == now) done_.pop_back();
+  while (!done_.empty() && taken(now, done_.back().after, done_.back().before) == now) done_.pop_back();
 }
 
 const Undoable& UndoHistory::undo() {
-  // A change whose end has not been seen yet is one, too.
-  if (!(seen_ == last_)) push(Undoable(seen_));
+  if (pending()) push(Undoable(seen_));
   Entry entry = std::move(done_.back());
   done_.pop_back();
-  undone_.push_back({std::move(entry.name), std::exchange(last_, std::move(entry.before))});
-  seen_ = last_;
+  // What a scene brought with it, it has again.
+  if (entry.before.applied != entry.after.applied) entry.after = last_;
+  last_ = seen_ = taken(std::move(last_), entry.after, entry.before);
+  undone_.push_back(std::move(entry));
   return last_;
 }
 
 const Undoable& UndoHistory::redo() {
   Entry entry = std::move(undone_.back());
   undone_.pop_back();
-  done_.push_back({std::move(entry.name), std::exchange(last_, std::move(entry.before))});
-  seen_ = last_;
+  last_ = seen_ = taken(std::move(last_), entry.before, entry.after);
+  done_.push_back(std::move(entry));
   return last_;
 }
 
 std::vector<std::string> UndoHistory::done() const {
   std::vector<std::string> names;
+  if (pending()) names.push_back(changeName(last_, seen_));
   for (auto entry = done_.rbegin(); entry != done_.rend(); ++entry) names.push_back(entry->name);
   return names;
 }
 
 std::vector<std::string> UndoHistory::undone() const {
   std::vector<std::string> names;
+  if (pending()) return names;
   for (auto entry = undone_.rbegin(); entry != undone_.rend(); ++entry) names.push_back(entry->name);
   return names;
 }

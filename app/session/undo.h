@@ -31,13 +31,14 @@ class UndoHistory {
   /// The state after a frame. `busy`: a change is still being made, such as by a slider that is held. Turns
   /// of the wheel within `kPause` s are one change.
   void look(const Undoable& now, bool busy, double seconds);
-  /// The state has changed, but by nobody: it is not a change of its own. What an entry then would not change
-  /// any more is dropped.
+  /// The state has changed, but by nobody: it is not a change of its own. What was changed before counts, and
+  /// what an entry then would not change any more is dropped.
   void follow(const Undoable& now);
 
-  bool canUndo() const { return !done_.empty() || !(seen_ == last_); }
-  bool canRedo() const { return !undone_.empty(); }
-  /// Takes back the last change: the state before it. Needs canUndo().
+  bool canUndo() const { return !done_.empty() || pending(); }
+  bool canRedo() const { return !undone_.empty() && !pending(); }
+  /// Takes back the last change: the present state with what the change was of, settings, view or text, as it
+  /// was before. Needs canUndo().
   const Undoable& undo();
   /// Does the one again that was taken back last. Needs canRedo().
   const Undoable& redo();
@@ -50,9 +51,11 @@ class UndoHistory {
   static constexpr double kPause = 0.6;
   struct Entry {
     std::string name;
-    Undoable before;
+    Undoable before, after;
   };
 
+  /// A change whose end has not been seen yet is one, too.
+  bool pending() const { return !(seen_ == last_); }
   void push(const Undoable& now);
 
   Undoable last_;     ///< the state of the last entry's end

@@ -161,6 +161,17 @@ void solverPanel(PanelModel& model) {
   }
   changed |= maxIterationsRow(solver);
   changed |= toleranceRow(solver);
+  rowLabel("Velocities");
+  int from = static_cast<int>(solver.velocityStep);
+  if (choice("##velocities", from, kVelocityStepNames)) {
+    solver.takeVelocities(static_cast<VelocityStep>(from));
+    changed = true;
+  }
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "positions: from how far the constraint has moved particles (PBF)\n"
+        "projection: from a pressure; waves keep their height, a step takes 1.4 to 1.8 times the time\n"
+        "Kernel, support radius and tolerance change with it");
   rowLabel("Position step");
   int step = static_cast<int>(solver.positionStep);
   if (choice("##position", step, kPositionStepNames)) {

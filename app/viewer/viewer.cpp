@@ -72,7 +72,7 @@ void Viewer::takeView() {
   if (!view_.section.shown) view_.section.axis = view_.clip.axis, view_.section.at = view_.clip.at;
 }
 
-bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) {
+bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls, int request) {
   const bool viewChanged = !(scene.view == scene_.view);
   scene_ = scene;
   settings_ = {scene.solver, scene.boundary, scene.effects};
@@ -86,16 +86,22 @@ bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls) 
   if (restores) {
     settings_ = afterwards_->settings;
     view_ = afterwards_->view;
-    afterwards_.reset();
   }
   // What a file brings that was changed elsewhere cannot be taken back here.
-  if (restores || awaitsText_) {
-    undo_.follow(undoable());
-  } else {
+  if (request == 0) {
     undo_.begin(undoable());
+  } else {
+    undo_.follow(undoable());
   }
-  awaitsText_ = false;
+  answerText(request);
   return restores;
+}
+
+void Viewer::answerText(int request) {
+  // An answer to an earlier text leaves open what comes of the last one.
+  if (options_.editor == nullptr || request != options_.editor->asked) return;
+  awaitsText_ = false;
+  afterwards_.reset();
 }
 
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
@@ -114,11 +120,11 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   }
 
   ui_.begin(width, height, input);
-  // What is drawn over the picture is drawn for the camera of the picture.
   // Where the mouse happens to be when the window opens, it points at nothing.
   const bool moved = last_.mouseInside && input.mouseInside &&
                      (input.mouseX != last_.mouseX || input.mouseY != last_.mouseY);
   mouseUsed_ = mouseUsed_ || moved || (input.down(MouseButton::left) && !last_.down(MouseButton::left));
+  // What is drawn over the picture is drawn for the camera of the picture.
   moveCamera(input, area);
   moveSection(input, area);
   inspect(frame, input, area);
@@ -128,6 +134,8 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   const bool held = std::any_of(input.buttons.begin(), input.buttons.end(), [](bool down) { return down; });
   undo_.look(undoable(), held || ui_.busy(), input.seconds);
   undo(commands);
+  // What is turned while a text is being read holds with it, too.
+  if (afterwards_) afterwards_ = undoable();
   last_ = input;
 
   target_->beginScene();
@@ -299,7 +307,9 @@ void Viewer::watchText() {
   SceneEditor& editor = *options_.editor;
   if (!editor.apply && !editor.save && !editor.revert) return;
   editor.applied = editor.revert ? editor.known : editor.text;
+  ++editor.asked;
   awaitsText_ = true;
+  afterwards_.reset();
 }
 
 void Viewer::undo(UiCommands& commands) {
@@ -315,11 +325,14 @@ void Viewer::restore(const Undoable& state, UiCommands& commands) {
   if (options_.editor == nullptr) return;
   SceneEditor& editor = *options_.editor;
   if (editor.text != state.text) editor.replaceText(state.text);
-  if (editor.applied == state.applied) return;
-  editor.applied = state.applied;
-  editor.restore = state.applied;
+  if (editor.applied != state.applied) {
+    editor.applied = state.applied;
+    editor.restore = state.applied;
+    ++editor.asked;
+    awaitsText_ = true;
+  }
   // The scene comes with settings and a view of its own.
-  afterwards_ = state;
+  if (awaitsText_) afterwards_ = state;
 }
 
 void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& commands) {

@@ -52,8 +52,11 @@ class Viewer {
 
   /// Takes over a changed scene. The camera and what else a person has turned stay, unless the scene's own
   /// view has changed. `walls`: of a scene that begins anew; nothing: the same ones, only parameters changed.
-  /// Returns whether settings() are others than the scene's: those from before a text that was taken back.
-  bool replaceScene(const Scene& scene, std::optional<WallDrawing> walls);
+  /// `request`: the number of the editor's that it answers; 0: its file has changed. Returns whether
+  /// settings() are others than the scene's: those from before a text that was taken back.
+  bool replaceScene(const Scene& scene, std::optional<WallDrawing> walls, int request);
+  /// The text of that number has been read.
+  void answerText(int request);
 
   /// Draws one frame and returns what the user asked for.
   UiCommands frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
@@ -113,8 +116,8 @@ class Viewer {
   Ui ui_;
   StageHistory history_;
   UndoHistory undo_;
-  bool awaitsText_ = false;             ///< a text is being taken over
-  std::optional<Undoable> afterwards_;  ///< what is to be in force once one is that was taken back to
+  bool awaitsText_ = false;             ///< the text that was last asked for is being read
+  std::optional<Undoable> afterwards_;  ///< what is to be in force with it, where it was taken back to
   std::vector<GlTexture> galleryPictures_;
   std::optional<RenderTarget> target_;
   /// What the section is drawn as, and what it was made of.
@@ -213,8 +216,8 @@ void applyRequest(SceneEditor& editor, SceneSession& session, const Settings& se
 /// Saves the simulation's state beside the scene's file, or goes on from it.
 void keepState(const UiCommands& commands, const SceneSession& session, SimulationThread& simulation);
 
-/// Shows the valid scene of a change: with its new simulation, which plays if the old one did, or by handing
-/// its parameters to the one that runs. The old simulation ends in the session's background.
+/// Shows the scene of a change, if it is valid: with its new simulation, which plays if the old one did, or
+/// by handing its parameters to the one that runs. The old simulation ends in the session's background.
 void applyChange(SceneChange& change, SceneSession& session, Viewer& viewer,
                  std::unique_ptr<SimulationThread>& simulation);
 

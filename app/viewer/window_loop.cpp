@@ -186,7 +186,7 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
         tellEditor(*change, session, editor);
         if (change->scene) trials.forget(whatIf, *simulation);
         if (change->simulation) probes.forget(inspect), sections.forget(section);
-        if (change->scene) applyChange(*change, session, viewer, simulation);
+        applyChange(*change, session, viewer, simulation);
         if (change->scene) printWarnings(*change->scene);
         redraws = kFramesAfterInput;
       }
@@ -353,15 +353,15 @@ void applyRequest(SceneEditor& editor, SceneSession& session, const Settings& se
   if (revert) editor.replaceText(editor.known);
   if (std::exchange(editor.apply, false) || revert) {
     editor.note = "reading ...";
-    session.apply(editor.text);
+    session.apply(editor.text, editor.asked);
   }
   if (const std::optional<std::string> text = std::exchange(editor.restore, std::nullopt)) {
     editor.note = "reading ...";
-    session.apply(*text);
+    session.apply(*text, editor.asked);
   }
   if (std::exchange(editor.save, false)) {
     editor.note = "saving ...";
-    session.saveAs({editor.saveName, editor.text, settings, view});
+    session.saveAs({editor.saveName, editor.text, settings, view}, editor.asked);
   }
 }
 
@@ -372,13 +372,15 @@ void keepState(const UiCommands& commands, const SceneSession& session, Simulati
 
 void applyChange(SceneChange& change, SceneSession& session, Viewer& viewer,
                  std::unique_ptr<SimulationThread>& simulation) {
+  if (!change.scene) return viewer.answerText(change.request);
   if (!change.simulation) {
-    viewer.replaceScene(*change.scene, std::nullopt);
+    viewer.replaceScene(*change.scene, std::nullopt, change.request);
     return simulation->apply(viewer.settings());
   }
   const bool playing = simulation->status().playing;
   session.retire(std::exchange(simulation, std::move(change.simulation)));
-  if (viewer.replaceScene(simulation->scene(), simulation->walls())) simulation->apply(viewer.settings());
+  if (viewer.replaceScene(simulation->scene(), simulation->walls(), change.request))
+    simulation->apply(viewer.settings());
   if (playing) simulation->play();
 }
 

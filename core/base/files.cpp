@@ -35,7 +35,7 @@ fs::path cacheFolder() {
     const char* value = std::getenv(name);
     return value == nullptr ? fs::path() : fs::path(value);
   };
-  if (const fs::path own = set("MIGIWA_CACHE"); !own.empty()) return own;
+  if (fs::path own = set("MIGIWA_CACHE"); !own.empty()) return own;
   if (const fs::path cache = set("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "migiwa";
   if (const fs::path home = set("HOME"); home.is_absolute()) return home / ".cache" / "migiwa";
   return {};

@@ -164,14 +164,6 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
                           [](auto& fields, auto& surface) { describeMotion(fields, surface.motion); });
 }
 
-/// A kernel that serves density and forces alike, and a tolerance that costs about an iteration a step, for
-/// what the constraint corrects does not become velocity.
-void setDefaultsOfProjection(SolverParameters& solver) {
-  solver.kernel = KernelType::wendlandC2;
-  solver.supportRatio = 2.25;
-  solver.tolerance = 0.003;
-}
-
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1),
@@ -194,7 +186,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
        "keep their height, see docs/method.md. With it the defaults are kernel wendland_c2, support_ratio "
        "2.25 and tolerance 0.003."});
   if constexpr (Visitor::kChanges)
-    if (solver.velocityStep == VelocityStep::projection) setDefaultsOfProjection(solver);
+    if (solver.velocityStep == VelocityStep::projection) solver.takeVelocities(VelocityStep::projection);
   if (visitor.valid({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
     visitor.fault("min_iterations", "expected at most max_iterations, which is " +
                                         std::to_string(solver.maxIterations) + ", found " +

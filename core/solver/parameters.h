@@ -47,6 +47,18 @@ struct SolverParameters {
   /// Mean divergence, times the time step, that ends a projection (unit: 1, range: [0, 1))
   double divergenceTolerance = 2e-5;
   int maxPressureIterations = 50;  ///< of a projection (range: [1, 1000])
+
+  /// Takes velocities from there, and the kernel, the support ratio and the tolerance that go with it: for a
+  /// projection a kernel that serves density and forces alike, and a tolerance that costs about an iteration
+  /// a step, for what the constraint corrects does not become velocity.
+  void takeVelocities(VelocityStep from) {
+    const SolverParameters usual;
+    const bool projects = from == VelocityStep::projection;
+    velocityStep = from;
+    kernel = projects ? KernelType::wendlandC2 : usual.kernel;
+    supportRatio = projects ? 2.25 : usual.supportRatio;
+    tolerance = projects ? 0.003 : usual.tolerance;
+  }
 };
 
 struct BoundaryParameters {

@@ -155,9 +155,10 @@ void NeighbourLists::Chunk::assign(std::span<const std::uint32_t> lists) {
 }
 
 void NeighbourLists::Chunk::makeValues() {
-  if (valueCapacity >= capacity) return;
-  valueCapacity = capacity;
+  // A chunk without any pair has a place for them, too.
+  if (values != nullptr && valueCapacity >= capacity) return;
   values = std::make_unique_for_overwrite<ValueGroup[]>(capacity / kGroup + 1);
+  valueCapacity = capacity;
 }
 
 namespace {

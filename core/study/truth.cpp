@@ -31,12 +31,12 @@ const std::vector<TruthCase>& truthCases() {
   static const std::vector<TruthCase> all = [] {
     std::vector<TruthCase> cases = truthWaves();
     for (TruthCase& flow : truthFlows()) cases.push_back(std::move(flow));
-    // What other settings try beside particle spacings belongs to velocities from positions.
+    // What other settings try beside spacings and motions belongs to velocities from positions.
     for (TruthCase& one : cases) {
       const std::vector<TruthSetting> settings = one.settings;
       for (const TruthSetting& setting : settings)
         if (std::all_of(setting.overrides.begin(), setting.overrides.end(), [](const std::string& override) {
-              return override.starts_with("/particle_spacing=");
+              return override.starts_with("/particle_spacing=") || override.starts_with("/boundary/");
             }))
           one.settings.push_back(projected(setting));
     }

@@ -68,6 +68,7 @@ TEST_F(UndoWindow, WhatEachControlDoesIsTakenBackAndDoneAgain) {
       {"/solver/max_iterations=", click("Max iterations", 200)},
       {"/solver/tolerance=", click("Tolerance", 100)},
       {"/solver/position_step=", choose("Position step", "paper")},
+      {"/solver/velocity_step=", choose("Velocities", "projection")},
       {"/solver/time_step=", click("Time step", 150)},
       {"/effects/viscosity/xsph=", click("Xsph", 200)},
       {"/effects/wall_friction/coefficient=", click("Coefficient", 150)},
@@ -200,7 +201,7 @@ class UndoText : public ::testing::Test {
     session_.wait();
     if (std::optional<SceneChange> change = session_.poll()) {
       tellEditor(*change, session_, editor_);
-      if (change->scene) applyChange(*change, session_, *viewer_, simulation_);
+      applyChange(*change, session_, *viewer_, simulation_);
     }
     hands_.look();
   }
@@ -256,6 +257,76 @@ TEST_F(UndoText, ASceneThatWasTakenOverGoesBackWithTheSettingsOfBefore) {
   }
   EXPECT_FALSE(viewer_->changes().canUndo());
   EXPECT_EQ(viewer_->settings().boundary.handling, BoundaryHandling::gamma);
+}
+
+TEST_F(UndoText, WhatIsTakenBackWhileATextIsReadHoldsInTheEnd) {
+  hands_.look(4);
+  hands_.press(Key::c);
+  hands_.look();
+  const Settings before = viewer_->settings();
+  const auto withIterations = [first = editor_.text](const char* number) {
+    std::string text = first;
+    text.replace(text.find("\"max_iterations\": 4"), 19, std::string("\"max_iterations\": ") + number);
+    return text;
+  };
+  const auto take = [&](const std::string& text) {
+    editor_.replaceText(text);
+    editor_.apply = true;
+    hands_.look();
+  };
+  // Back before the text has been read, and over two of them at once.
+  take(withIterations("9"));
+  hands_.press(Key::z, true);
+  take(withIterations("8"));
+  hands_.look();
+  take(withIterations("7"));
+  hands_.look();
+  hands_.press(Key::z, true);
+  hands_.press(Key::z, true);
+  viewer_->view().color = ColorField::speed;
+  hands_.look();
+  for (int answer = 0; answer < 6; ++answer) await();
+  EXPECT_EQ(viewer_->settings().solver.maxIterations, 4);
+  EXPECT_EQ(viewer_->settings().boundary.handling, before.boundary.handling);
+  EXPECT_EQ(viewer_->view().color, ColorField::speed) << "turned meanwhile";
+  EXPECT_TRUE(viewer_->changes().canUndo());
+
+  // A text with faults is not taken over; what was to hold with it does not hold with the next.
+  take("{");
+  take(withIterations("6"));
+  for (int answer = 0; answer < 2; ++answer) await();
+  ASSERT_EQ(viewer_->settings().solver.maxIterations, 6);
+  hands_.press(Key::z, true);
+  await();
+  take(withIterations("5"));
+  await();
+  EXPECT_EQ(viewer_->settings().solver.maxIterations, 5);
+}
+
+TEST(UndoHistory, TakesBackOnlyWhatAChangeWasOf) {
+  const auto settled = [](UndoHistory& history, const Undoable& state) {
+    for (int k = 0; k < 2; ++k) history.look(state, false, 1);
+  };
+  Undoable state;
+  UndoHistory history;
+  history.begin(state);
+  state.settings.solver.tolerance = 0.02;
+  settled(history, state);
+  state.view.water = true;
+  settled(history, state);
+  // The time line goes back to before the tolerance was changed.
+  state.settings.solver.tolerance = 0.01;
+  history.follow(state);
+  const Undoable back = history.undo();
+  EXPECT_FALSE(back.view.water);
+  EXPECT_EQ(back.settings.solver.tolerance, 0.01);
+  // A change whose end has not been seen is the last one, and leaves nothing to do again.
+  state = back;
+  state.view.camera.fovDegrees += 1;
+  history.look(state, false, 0.01);
+  EXPECT_FALSE(history.canRedo());
+  EXPECT_EQ(history.done().front(), "camera");
+  EXPECT_TRUE(history.undo() == back);
 }
 
 TEST_F(UndoText, AFileThatWasChangedElsewhereLeavesNothingToTakeBack) {

@@ -92,6 +92,9 @@ TEST(Truth, ProjectionKeepsWavesAndSwings) {
   expectWithin(wave, "period", 0.03);
   const TruthFindings swing = projection("u_tube", {"/particle_spacing=0.025", "/duration=4"});
   expectWithin(swing, "first swing", 0.12);
+  // A low wave lives long enough to have its period.
+  const std::string low = "/boundary/surfaces/0/motion/oscillation/degrees=0.3";
+  expectWithin(projection("sloshing", {"/particle_spacing=0.015", low}), "period", 0.05);
   const TruthFindings piston = projection("piston", {"/particle_spacing=0.04"});
   expectWithin(piston, "pressure", 0.05);
   expectWithin(piston, "level", 0.06);
