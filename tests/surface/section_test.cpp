@@ -254,12 +254,12 @@ TEST(Section, HasNoValueWhereThereIsNothingOrWhatIsNotFinite) {
 
 TEST(Section, IsAsSteepAsItsFieldUpToTheBorderOfTheLiquid) {
   SectionRaster raster;
-  raster.plane.columns = 5, raster.plane.rows = 4;
-  for (int row = 0; row < 4; ++row)
+  raster.plane.columns = 5, raster.plane.rows = 5;
+  for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 5; ++column)
-      raster.values.push_back(column == 2 && row == 1 ? std::nanf("")
+      raster.values.push_back(column == 2 && row == 2 ? std::nanf("")
                                                       : static_cast<float>(3 * column + 4 * row));
-  for (int row = 0; row < 4; ++row)
+  for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 5; ++column)
       if (!std::isnan(raster.value(column, row))) {
         EXPECT_EQ(raster.steepness(column, row), 5) << column << ' ' << row;
