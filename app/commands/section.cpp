@@ -3,7 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -59,10 +61,26 @@ struct Cut {
   std::string name;
 };
 
+/// Significant digits that tell places of a scene apart, however far from zero it is.
+int placeDigits(const Scene& scene) {
+  const Bounds bounds = scene.bounds();
+  const double size = bounds.size().maxCoeff(), far = (bounds.center() + scene.origin).cwiseAbs().maxCoeff();
+  return size > 0 && far > size ? std::min(6 + static_cast<int>(std::ceil(std::log10(far / size))), 15) : 6;
+}
+
+/// "(0.71, 0.71, 0)", with so many decimals at most and no zero below zero.
+std::string directionText(const Vec3d& direction, int decimals) {
+  const double unit = std::pow(10, decimals);
+  std::string text;
+  for (const double part : direction)
+    text += (text.empty() ? "(" : ", ") + formatNumber("%g", std::round(part * unit) / unit + 0.0);
+  return text + ")";
+}
+
 Cut cutOf(const SectionOptions& options, const Scene& scene) {
   Cut cut;
   std::ostringstream name;
-  name.precision(6);
+  name.precision(placeDigits(scene));
   if (!options.normal.empty()) {
     std::array<double, 3> normal{};
     const bool valid = readNumbers(options.normal, normal);
@@ -71,8 +89,7 @@ Cut cutOf(const SectionOptions& options, const Scene& scene) {
       throw InputError("--normal", "expected X,Y,Z of some length, found \"" + options.normal + "\"");
     cut.normal.normalize();
     cut.offset = options.offset ? *options.offset : cut.normal.dot(scene.bounds().center() + scene.origin);
-    name << "(" << cut.normal.x() << ", " << cut.normal.y() << ", " << cut.normal.z()
-         << ") · x = " << cut.offset << " m";
+    name << directionText(cut.normal, 6) << " · x = " << cut.offset << " m";
     cut.name = name.str();
     return cut;
   }
@@ -99,10 +116,19 @@ Cut cutOf(const SectionOptions& options, const Scene& scene) {
 struct SectionJob {
   Cut cut;
   SectionPlane plane;
-  SectionField field;
-  SectionDivisor divisor;
-  double time;
+  SectionField field = SectionField::density;
+  SectionDivisor divisor = SectionDivisor::sum;
+  double time = 0;  ///< (s)
 };
+
+/// Whether both name one file, which may not be there yet.
+bool isOneFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  const auto place = [&](const std::string& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored), ignored);
+  };
+  return place(a) == place(b);
+}
 
 SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
   SectionJob job;
@@ -117,12 +143,19 @@ SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
       throw InputError("section", "expected --csv FILE or --png FILE, found neither");
     if (!options.csv.empty()) requireWritable(options.csv, "--csv");
     if (!options.png.empty()) requireWritable(options.png, "--png");
+    if (!options.csv.empty() && !options.png.empty() && isOneFile(options.csv, options.png))
+      throw InputError("--png", "expected another file than that of --csv, found \"" + options.png + "\"");
   });
   collect([&] {
     job.time = options.time.value_or(0);
     if (!(job.time >= 0 && job.time <= kLongestRun))
       throw InputError("--time",
                        "expected a time in [0, 1e+06] (unit: s), found " + formatNumber("%g", job.time));
+    // As Simulation::frameAt() rounds.
+    if (job.field == SectionField::pressure && job.time < 0.5 * scene.solver.timeStep)
+      throw InputError("--time", "expected a step or more (" + formatNumber("%g", scene.solver.timeStep) +
+                                     " s), for the pressure is that of the last step, found " +
+                                     formatNumber("%g", job.time));
   });
   collect([&] {
     if (scene.bounds().empty())
@@ -136,9 +169,11 @@ SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
     if (!plane) {
       const Bounds bounds = scene.bounds();
       std::ostringstream text;
+      text.precision(placeDigits(scene));
+      const Eigen::IOFormat plain(Eigen::StreamPrecision, Eigen::DontAlignCols);
       text << "expected a plane that meets the scene, which reaches from ("
-           << (bounds.min + scene.origin).transpose() << ") to (" << (bounds.max + scene.origin).transpose()
-           << ") m, found " << job.cut.name;
+           << (bounds.min + scene.origin).transpose().format(plain) << ") to ("
+           << (bounds.max + scene.origin).transpose().format(plain) << ") m, found " << job.cut.name;
       throw InputError(options.normal.empty() ? "--plane" : "--offset", text.str());
     }
     job.plane = *plane;
@@ -147,15 +182,55 @@ SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
   return job;
 }
 
-/// What is along an axis of the picture.
-std::string axisName(const Vec3d& along) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    if (along[axis] > 1 - 1e-9) return std::string(1, "xyz"[axis]) + " (m)";
+/// An axis of the picture. A scene far from zero has places relative to whole metres near it.
+struct PictureAxis {
+  double shift = 0, low, high;  ///< along it (m); low and high relative to the shift
+  std::string label;
+
+  PictureAxis(const Vec3d& along, const SectionPlane& plane, int cells, const Scene& scene)
+      : low((plane.corner + scene.origin).dot(along)), label("along " + directionText(along, 2)) {
+    if (std::abs(scene.origin.dot(along)) > 0.5) shift = std::floor(low + 1e-6 * plane.cell);
+    low -= shift;
+    high = low + cells * plane.cell;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if (along[axis] > 1 - 1e-9) label = "xyz"[axis];
+    if (shift != 0) label += (shift > 0 ? " - " : " + ") + formatNumber("%.0f", std::abs(shift));
+    label += " (m)";
+  }
+};
+
+/// The cells as gnuplot's rows of x, y and value, where a value is to have lines once more. The smallest
+/// image that gnuplot takes is of 2 x 2 cells: of a single row or column each cell is two by two of them.
+struct PictureCells {
   std::ostringstream text;
-  text.precision(2);
-  text << "along (" << along.x() << ", " << along.y() << ", " << along.z() << ") (m)";
-  return text.str();
-}
+  bool lines = false;  ///< any cell is to have some
+
+  PictureCells(const SectionRaster& raster, double left, double bottom, double step) {
+    const SectionPlane& plane = raster.plane;
+    const int parts = std::min(plane.columns, plane.rows) > 1 ? 1 : 2;
+    text.precision(12);
+    for (int row = 0; row < parts * plane.rows; ++row) {
+      for (int column = 0; column < parts * plane.columns; ++column) {
+        const float value = raster.value(column / parts, row / parts);
+        text << left + (column + 0.5) * plane.cell / parts << ' ' << bottom + (row + 0.5) * plane.cell / parts
+             << ' ';
+        if (std::isnan(value)) {
+          text << "NaN NaN\n";
+          continue;
+        }
+        text << value << ' ';
+        const bool steep = raster.steepness(column / parts, row / parts) * kFlattestLines > step;
+        if (steep && parts == 1) {
+          text << value << '\n';
+          lines = true;
+        } else {
+          text << "NaN\n";
+        }
+      }
+      text << '\n';
+    }
+  }
+};
 
 /// A picture with axes, lines of equal values and a legend.
 void plotSection(const std::string& png, const SectionRaster& raster, const SectionJob& job,
@@ -167,40 +242,36 @@ void plotSection(const std::string& png, const SectionRaster& raster, const Sect
   if (range && (job.field == SectionField::pressure || job.field == SectionField::speed))
     info.high = std::max(static_cast<double>((*range)[1]), 1e-6 * info.high);
   const SectionPlane& plane = raster.plane;
-  // Places along the axes of the picture, in the coordinates of the scene's file.
-  const double left = (plane.corner + scene.origin).dot(plane.across),
-               bottom = (plane.corner + scene.origin).dot(plane.up);
-  const double right = left + plane.columns * plane.cell, top = bottom + plane.rows * plane.cell;
+  const PictureAxis across(plane.across, plane, plane.columns, scene), up(plane.up, plane, plane.rows, scene);
   std::ostringstream script;
-  script << "$map << EOD\n";
-  std::size_t k = 0;
-  for (int row = 0; row < plane.rows; ++row) {
-    for (int column = 0; column < plane.columns; ++column, ++k) {
-      script << left + (column + 0.5) * plane.cell << ' ' << bottom + (row + 0.5) * plane.cell << ' ';
-      if (std::isnan(raster.values[k])) {
-        script << "NaN\n";
-      } else {
-        script << raster.values[k] << '\n';
-      }
+  script.precision(12);
+  script << sequentialPalette() << "set cbrange [" << info.low << ':' << info.high << "]\n";
+  std::string drawn = "1/0 notitle";
+  if (range) {
+    const std::vector<double> levels = roundTicks(info.low, info.high, 12).values;
+    const double step = levels.size() > 1 ? levels[1] - levels[0] : std::numeric_limits<double>::infinity();
+    const PictureCells cells(raster, across.low, up.low, step);
+    script << "$map << EOD\n" << cells.text.str() << "EOD\n";
+    drawn = "$map using 1:2:3 with image notitle";
+    if (cells.lines) {
+      script << "set contour base\nset cntrparam levels discrete ";
+      for (std::size_t n = 0; n < levels.size(); ++n) script << (n > 0 ? "," : "") << levels[n];
+      script << "\nunset surface\nset table $lines\nsplot $map using 1:2:4 with lines\nunset table\n";
+      drawn += ", $lines using 1:2 with lines linewidth 0.8 linecolor rgb '#30000000' notitle";
     }
-    script << '\n';
+  } else {
+    script << "set label 'no liquid on this plane' at graph 0.5, graph 0.5 center\n";
   }
-  script << "EOD\n" << sequentialPalette() << "set cbrange [" << info.low << ':' << info.high << "]\n";
-  const Ticks ticks = roundTicks(info.low, info.high, 12);
-  script << "set contour base\nset cntrparam levels discrete ";
-  for (std::size_t n = 0; n < ticks.values.size(); ++n) script << (n > 0 ? "," : "") << ticks.values[n];
-  // Within one colour there is nothing to tell apart by lines: they would trace what is left of rounding.
   script
-      << "\nunset surface\nset table $lines\nsplot $map using 1:2:3 with lines\nunset table\n"
-      << "set size ratio -1\nset xlabel " << quotedForGnuplot(axisName(plane.across)) << "\nset ylabel "
-      << quotedForGnuplot(axisName(plane.up)) << "\nset xrange [" << left << ':' << right << "]\nset yrange ["
-      << bottom << ':' << top << "]\nset tics out nomirror\nset cblabel "
+      << "set size ratio -1\nset xlabel " << quotedForGnuplot(across.label) << "\nset ylabel "
+      << quotedForGnuplot(up.label) << "\nset xrange [" << across.low << ':' << across.high
+      << "]\nset yrange [" << up.low << ':' << up.high << "]\nset tics out nomirror\nset cblabel "
       << quotedForGnuplot(info.label + (info.unit.empty() ? "" : " (" + info.unit + ")")) << "\nset title "
       << quotedForGnuplot(title)
       << "\nset object rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#e4e7ea' fillstyle solid "
-         "noborder\nplot $map using 1:2:3 with image notitle, $lines using 1:2 with lines linewidth 0.8 "
-         "linecolor rgb '#30000000' notitle\n";
-  const double shape = (top - bottom) / (right - left);
+         "noborder\nplot "
+      << drawn << '\n';
+  const double shape = (up.high - up.low) / (across.high - across.low);
   const int width = shape > 1 ? 720 : 1100;
   const int height = std::clamp(static_cast<int>(0.78 * width * shape) + 130, 320, 1400);
   drawWithGnuplot(png,

@@ -47,6 +47,7 @@ class SectionSession {
 
   int threads_;
   std::shared_ptr<Tool> tool_;
+  std::optional<SceneSection::Method> method_{};  ///< that was last asked for, whether or not it could be had
   std::future<Outcome> asking_;
   bool dropped_ = false;
   std::chrono::steady_clock::time_point asked_{};

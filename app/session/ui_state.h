@@ -153,9 +153,7 @@ struct SectionModel {
   SectionView of;                               ///< as which it was asked for
   double time = 0;                              ///< (s)
   std::string fault;                            ///< why there is none
-  bool underWay = false;
-  std::string note;              ///< what became of the last request to keep it
-  std::optional<Vec3d> pointed;  ///< place on it under the mouse (m)
+  std::optional<Vec3d> pointed;                 ///< place on it under the mouse (m)
 };
 
 // The gallery: what can be opened.

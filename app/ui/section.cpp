@@ -107,8 +107,7 @@ void sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const
   if (!value) return;
   const Vec3d at = *model.pointed + origin;
   ImGui::BeginTooltip();
-  ImGui::Text("%s  %.5g %s", info.label.substr(0, info.label.find(", section")).c_str(),
-              static_cast<double>(*value), info.unit.c_str());
+  ImGui::Text("%s  %.5g %s", info.label.c_str(), static_cast<double>(*value), info.unit.c_str());
   ImGui::Text("at  %.3f  %.3f  %.3f m", at.x(), at.y(), at.z());
   ImGui::EndTooltip();
 }

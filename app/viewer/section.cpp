@@ -15,29 +15,13 @@ namespace {
 constexpr int kLevels = 12;
 constexpr double kLineCells = 0.3;  ///< half the width of such a line
 constexpr Rgb8 kLineColor{20, 28, 40};
-/// A field that changes by less than a step between lines over so many cells has no line there: it would show
-/// rounding.
-constexpr double kFlattest = 400;
 
 /// How much of a line is at a cell, in [0, 1]: by the way to the nearest level over how fast the field
 /// changes.
 double lineAt(const SectionRaster& raster, int column, int row, const std::vector<double>& levels) {
-  const auto value = [&](int c, int r) {
-    return static_cast<double>(
-        raster.values[static_cast<std::size_t>(r) * static_cast<std::size_t>(raster.plane.columns) +
-                      static_cast<std::size_t>(c)]);
-  };
-  const double here = value(column, row);
-  const auto slope = [&](int low, int high, const auto& at) {
-    const double difference = (at(high) - at(low)) / std::max(high - low, 1);
-    return std::isfinite(difference) ? difference : 0.0;
-  };
-  const double along = slope(std::max(column - 1, 0), std::min(column + 1, raster.plane.columns - 1),
-                             [&](int c) { return value(c, row); });
-  const double up = slope(std::max(row - 1, 0), std::min(row + 1, raster.plane.rows - 1),
-                          [&](int r) { return value(column, r); });
-  const double gradient = std::hypot(along, up);
-  if (levels.size() < 2 || gradient * kFlattest < levels[1] - levels[0]) return 0;
+  const double here = static_cast<double>(raster.value(column, row));
+  const double gradient = raster.steepness(column, row);
+  if (levels.size() < 2 || gradient * kFlattestLines <= levels[1] - levels[0]) return 0;
   const auto above = std::lower_bound(levels.begin(), levels.end(), here);
   double away = std::numeric_limits<double>::infinity();
   if (above != levels.end()) away = *above - here;
@@ -86,7 +70,6 @@ ColorFieldInfo Viewer::sectionInfo() const {
     info.low = std::min(info.low, 0.0);
     info.label += of.divisor == SectionDivisor::gamma ? ", over γ" : ", not divided";
   }
-  info.label += ", section";
   if (view_.section.fit && options_.section->raster) {
     if (const auto range = options_.section->raster->range()) {
       info.low = static_cast<double>((*range)[0]);

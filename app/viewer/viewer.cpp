@@ -69,7 +69,10 @@ void Viewer::takeView() {
   // A cut that is switched on later begins in the middle.
   if (!view_.clip.enabled) view_.clip.at = bounds_.center()[static_cast<Eigen::Index>(view_.clip.axis)];
   // So does a section.
-  if (!view_.section.shown) view_.section.axis = view_.clip.axis, view_.section.at = view_.clip.at;
+  SectionView& section = view_.section;
+  if (section.shown) return;
+  section.axis = view_.clip.axis;
+  section.at = section.free ? section.direction().dot(bounds_.center()) : view_.clip.at;
 }
 
 bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls, int request) {
@@ -219,7 +222,9 @@ void Viewer::drawSectionLegend(const Rect& area) {
   const NodePass& nodes = renderer_.nodes();
   if (!view_.water) above.height -= ui_.legendHeight();
   if (view_.walls && view_.nodes && !nodes.empty()) above.height -= ui_.legendHeight();
-  ui_.legend(info, {info.low, info.high}, options_.colors, above);
+  ColorFieldInfo legend = info;
+  legend.label += ", section";
+  ui_.legend(legend, {info.low, info.high}, options_.colors, above);
   ui_.sectionPointer(*options_.section, info, scene_.origin);
 }
 

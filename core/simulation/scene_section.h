@@ -36,8 +36,16 @@ class SceneSection {
   /// of the scene's method. Throws InputError where it does not allow the walls.
   SceneSection(const Scene& scene, ThreadPool& pool);
 
-  /// Whether it is one for these settings, too.
-  bool fits(const Scene& scene) const;
+  /// All of the settings that it depends on.
+  struct Method {
+    int index, directions, samples;
+    KernelType kernel;
+    float support;
+    bool operator==(const Method&) const = default;
+  };
+  /// `spacing` of particles (m).
+  static Method methodOf(double spacing, const SolverParameters& solver, const BoundaryParameters& boundary);
+  const Method& method() const { return method_; }
 
   /// A field on a plane at `time` (s); positions (m) are relative to Scene::origin, `values` those of
   /// sectionValues(). The error of gamma is that against 16,384 directions, some 50 microseconds a cell near
@@ -46,14 +54,6 @@ class SceneSection {
                    std::span<const Float4> positions, std::span<const float> values, double time);
 
  private:
-  struct Method {
-    int index, directions, samples;
-    KernelType kernel;
-    float support;
-    bool operator==(const Method&) const = default;
-  };
-  static Method methodOf(const Scene& scene);
-
   ThreadPool& pool_;
   Method method_;
   float weight_;

@@ -114,7 +114,7 @@ ColorFieldInfo sectionFieldInfo(SectionField field, double referenceSpeed, doubl
 
 SceneSection::SceneSection(const Scene& scene, ThreadPool& pool)
     : pool_(pool),
-      method_(methodOf(scene)),
+      method_(methodOf(scene.particleSpacing, scene.solver, scene.boundary)),
       weight_(restingLattice(scene.solver.kernel, scene.solver.supportRatio).massRatio),
       boundary_(wallsOf(scene, pool)) {
   if (boundary_.empty()) return;
@@ -122,13 +122,10 @@ SceneSection::SceneSection(const Scene& scene, ThreadPool& pool)
   reference_ = referenceGamma(gammaContextOf(scene, boundary_, pool));
 }
 
-SceneSection::Method SceneSection::methodOf(const Scene& scene) {
-  return {scene.boundary.gammaMethod, scene.boundary.directions, scene.boundary.samples, scene.solver.kernel,
-          static_cast<float>(scene.supportRadius())};
-}
-
-bool SceneSection::fits(const Scene& scene) const {
-  return methodOf(scene) == method_;
+SceneSection::Method SceneSection::methodOf(double spacing, const SolverParameters& solver,
+                                            const BoundaryParameters& boundary) {
+  return {boundary.gammaMethod, boundary.directions, boundary.samples, solver.kernel,
+          static_cast<float>(solver.supportRatio * spacing)};
 }
 
 SectionRaster SceneSection::of(const SectionPlane& plane, SectionField field, SectionDivisor divisor,

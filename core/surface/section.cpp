@@ -234,15 +234,30 @@ std::optional<SectionPlane> sectionPlane(const Vec3d& normal, double offset, con
   return plane;
 }
 
+double SectionRaster::steepness(int column, int row) const {
+  // Between the cells on either side; at a border of the liquid from the cell itself.
+  const auto along = [here = value(column, row)](float before, float after) {
+    const int ways = (std::isnan(before) ? 0 : 1) + (std::isnan(after) ? 0 : 1);
+    const float low = std::isnan(before) ? here : before, high = std::isnan(after) ? here : after;
+    const double slope = (static_cast<double>(high) - static_cast<double>(low)) / std::max(ways, 1);
+    return std::isfinite(slope) ? slope : 0;
+  };
+  const auto near = [&](int c, int r) {
+    const bool inside = c >= 0 && r >= 0 && c < plane.columns && r < plane.rows;
+    return inside ? value(c, r) : std::numeric_limits<float>::quiet_NaN();
+  };
+  return std::hypot(along(near(column - 1, row), near(column + 1, row)),
+                    along(near(column, row - 1), near(column, row + 1)));
+}
+
 std::optional<float> SectionRaster::at(const Vec3d& p) const {
   const Vec3d offset = p - plane.corner;
   const double column = std::floor(offset.dot(plane.across) / plane.cell),
                row = std::floor(offset.dot(plane.up) / plane.cell);
   if (!(column >= 0 && row >= 0 && column < plane.columns && row < plane.rows)) return std::nullopt;
-  const float value = values[static_cast<std::size_t>(row) * static_cast<std::size_t>(plane.columns) +
-                             static_cast<std::size_t>(column)];
-  if (std::isnan(value)) return std::nullopt;
-  return value;
+  const float there = value(static_cast<int>(column), static_cast<int>(row));
+  if (std::isnan(there)) return std::nullopt;
+  return there;
 }
 
 std::optional<std::array<float, 2>> SectionRaster::range() const {

@@ -60,11 +60,22 @@ struct SectionRaster {
   SectionPlane plane;
   std::vector<float> values;  ///< row by row from the corner; NaN where there is no liquid
 
+  float value(int column, int row) const {
+    return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(plane.columns) +
+                  static_cast<std::size_t>(column)];
+  }
+  /// How much the field changes from a cell of the liquid to the next, in the direction in which it changes
+  /// most.
+  double steepness(int column, int row) const;
   /// Nothing outside the raster or the liquid.
   std::optional<float> at(const Vec3d& p) const;
   /// Of what is not NaN; nothing where all is.
   std::optional<std::array<float, 2>> range() const;
 };
+
+/// A field that changes by less than a step between lines of equal values over so many cells has no line
+/// there: it would show rounding.
+inline constexpr double kFlattestLines = 400;
 
 /// The field A with the values A_j: sum_j V A_j W(x - x_j) over the divisor. Liquid is where sum_j V W is at
 /// least half of gamma, on the fluid's side of the walls: as where liquidSurface() has its surface. Through

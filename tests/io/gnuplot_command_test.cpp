@@ -1,7 +1,10 @@
 // What is said where gnuplot is not there, fails, or is killed: three things, with three remedies.
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +80,60 @@ TEST_F(GnuplotCommand, ManyWordsAreCutToTheLast) {
       mapWith("i=0; while [ $i -lt 20000 ]; do echo \"word $i\" >&2; i=$((i + 1)); done; exit 1");
   expectNoPicture(outcome, "word 19999; the disk");
   EXPECT_LT(outcome.err.size(), 1000U);
+}
+
+/// What gnuplot is told of a section, by one that keeps it.
+class SectionCommandPicture : public DropTest {
+ protected:
+  std::string script(std::vector<std::string> words) const {
+    fs::create_directories(folder_ / "bin");
+    std::ofstream(folder_ / "bin" / "gnuplot") << "#!/bin/sh\ncat >script\necho picture\n";
+    fs::permissions(folder_ / "bin" / "gnuplot", fs::perms::owner_all);
+    words.insert(words.begin(), {"section"});
+    words.insert(words.end(), {"--png", "s.png"});
+    const Outcome outcome = run(words, "PATH=$PWD/bin:$PATH && export PATH");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return readAll(folder_ / "script");
+  }
+};
+
+TEST_F(SectionCommandPicture, CellsOfASceneFarFromZeroStayApart) {
+  std::ofstream(folder_ / "far.json") << R"({ "format": 1, "particle_spacing": 0.05, "duration": 0.1,
+      "fluid": [ { "shape": "box", "min": [500000.2, 0, 0], "max": [500000.6, 0.4, 0.4] } ],
+      "boundary": { "surfaces": [ { "shape": "box", "fluid": "inside", "min": [500000, 0, 0],
+                                    "max": [500000.8, 1, 0.4] } ] } })";
+  const std::string text = script({"far.json", "--plane", "z=0.2", "--cells", "200"});
+  std::istringstream lines(text.substr(text.find("$map << EOD\n") + 12));
+  std::set<std::string> across;
+  std::string x, line;
+  while (lines >> x && x != "EOD") across.insert(x), std::getline(lines, line);
+  EXPECT_EQ(across.size(), 160U) << "columns of 5 mm";
+  EXPECT_NE(text.find("'x - 500000 (m)'"), std::string::npos);
+  EXPECT_NE(script({"far.json", "--plane", "x=500000.55"}).find("at x = 500000.55 m"), std::string::npos);
+}
+
+TEST_F(SectionCommandPicture, NoAxisIsAlongAZeroBelowZero) {
+  const std::string text = script({"drop.json", "--normal", "1,1,-0", "--cells", "64"});
+  EXPECT_NE(text.find("'along ("), std::string::npos) << "an axis at an angle";
+  EXPECT_EQ(text.find("-0,"), std::string::npos);
+  EXPECT_EQ(text.find("-0)"), std::string::npos);
+}
+
+/// By gnuplot itself, which takes neither an image of one column nor lines of nothing.
+TEST_F(DropTest, ASectionWithoutLiquidAndOneOfASingleColumnAreDrawn) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--plane", "x=0.75"}, {"--plane", "x=0.4", "--cells", "2"}}) {
+    std::vector<std::string> all{"section", "drop.json", "--png", "s.png"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(readAll(folder_ / "s.png").size(), 2000U);
+    fs::remove(folder_ / "s.png");
+  }
+}
+
+TEST_F(SectionCommandPicture, SaysWhereThereIsNoLiquid) {
+  EXPECT_NE(script({"drop.json", "--plane", "x=0.75"}).find("no liquid on this plane"), std::string::npos);
 }
 
 }  // namespace

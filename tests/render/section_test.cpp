@@ -1,5 +1,6 @@
 // The section in the window: what its panel's widgets do, that the picture shows the raster where it is, and
 // that the command writes the same.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -172,6 +173,54 @@ TEST_F(SectionWindow, SaysWhenThePlaneMissesTheScene) {
   EXPECT_NE(model_.raster, nullptr);
 }
 
+TEST_F(SectionWindow, IsMadeAgainForWhatItsRasterDependsOnAlone) {
+  view().shown = true, view().at = 0.25;
+  await();
+  const auto first = model_.raster;
+  ASSERT_NE(first, nullptr);
+  view().lines = !view().lines, view().fit = !view().fit, view().cut = !view().cut;
+  view().normal = {1, 2, 3};  // it is across an axis
+  await();
+  EXPECT_EQ(model_.raster, first);
+  view().divisor = SectionDivisor::none;
+  await();
+  EXPECT_NE(model_.raster, first);
+}
+
+/// A grid that no memory holds, asked for where one section is shown already.
+TEST_F(SectionWindow, SettingsThatItCannotHaveAreTriedOnce) {
+  view().shown = true, view().at = 0.25;
+  await();
+  ASSERT_NE(model_.raster, nullptr);
+  Settings settings = viewer_.settings();
+  const auto names = gammaMethodNames();
+  settings.boundary.gammaMethod =
+      static_cast<int>(std::find(names.begin(), names.end(), "baked") - names.begin());
+  settings.solver.supportRatio = 1e-3;
+  const auto poll = [&](const Settings& now) {
+    const bool news = sections_.poll(model_, view(), simulation_.scene(), now, frame_.view());
+    sections_.wait();
+    return news;
+  };
+  poll(settings);
+  EXPECT_TRUE(poll(settings));
+  EXPECT_NE(model_.fault.find("grid"), std::string::npos) << model_.fault;
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(poll(settings)) << "asked again";
+  poll(viewer_.settings());
+  EXPECT_TRUE(poll(viewer_.settings()));
+  EXPECT_EQ(model_.fault, "");
+  EXPECT_NE(model_.raster, nullptr);
+}
+
+TEST_F(SectionWindow, OneAtAnAngleBeginsInTheMiddleOfAnotherView) {
+  view().free = true, view().normal = {1, 1, 0};
+  Scene scene = simulation_.scene();
+  scene.view.clip = {.enabled = true, .axis = Axis::z, .at = 0.1};
+  viewer_.replaceScene(scene, std::nullopt);
+  EXPECT_EQ(view().axis, Axis::z);
+  EXPECT_NEAR(view().at, view().direction().dot(scene.bounds().center()), 1e-12);
+}
+
 /// What `migiwa section` writes of the same moment.
 TEST_F(SectionWindow, ItsTableIsThatOfTheCommand) {
   const std::filesystem::path folder = freshFolder("section");
@@ -211,6 +260,10 @@ TEST(SectionCommand, RefusesWhatItCannotDoAndSaysHow) {
   EXPECT_NE(faultOf({"--csv", csv, "--normal", "0,0,0"}).find("--normal"), std::string::npos);
   EXPECT_NE(faultOf({"--csv", csv, "--field", "colour"}).find("\"gamma_error\""), std::string::npos);
   EXPECT_NE(faultOf({"--csv", csv, "--offset", "1"}).find("--normal beside it"), std::string::npos);
+  EXPECT_NE(faultOf({"--csv", csv, "--png", (folder / "." / "s.csv").string()}).find("another file"),
+            std::string::npos);
+  EXPECT_NE(faultOf({"--csv", csv, "--field", "pressure"}).find("a step or more (0.005 s)"),
+            std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(csv));
   std::filesystem::remove_all(folder);
 }

@@ -252,6 +252,22 @@ TEST(Section, HasNoValueWhereThereIsNothingOrWhatIsNotFinite) {
   EXPECT_FALSE(empty.range());
 }
 
+TEST(Section, IsAsSteepAsItsFieldUpToTheBorderOfTheLiquid) {
+  SectionRaster raster;
+  raster.plane.columns = 5, raster.plane.rows = 5;
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 5; ++column)
+      raster.values.push_back(column == 2 && row == 2 ? std::nanf("")
+                                                      : static_cast<float>(3 * column + 4 * row));
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 5; ++column)
+      if (!std::isnan(raster.value(column, row))) {
+        EXPECT_EQ(raster.steepness(column, row), 5) << column << ' ' << row;
+      }
+  for (float& value : raster.values) value = 7;
+  EXPECT_EQ(raster.steepness(0, 3), 0);
+}
+
 TEST(SectionPlane, IsUprightAndHoldsWhatThePlaneCutsOutOfTheBounds) {
   Bounds bounds;
   bounds.include(Vec3d(-1, 0, 0));
