@@ -244,10 +244,11 @@ void WaterPass::draw(const RenderTarget& target, const WaterShot& shot) {
   glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(toOpaque_.name(), toAll_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  // Where there are several samples a pixel, some drivers let pixels beside the scissors' rectangle through.
+  glClearNamedFramebufferfv(toColors_.name(), GL_COLOR, 0, kNothing.data());
   glEnable(GL_SCISSOR_TEST);
   shade(toAll_, farEntries_, farExits_, opaque_);
   glGenerateTextureMipmap(all_.name());
-  glClearNamedFramebufferfv(toColors_.name(), GL_COLOR, 0, kNothing.data());
   shade(toColors_, entries_, exits_, all_);
 
   target.continueScene();
