@@ -14,7 +14,6 @@
 #include "app/viewer/viewer.h"
 #include "core/simulation/scene_surface.h"
 #include "core/simulation/simulation.h"
-#include "core/walls/shapes.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
@@ -184,11 +183,18 @@ SurfaceMesh prism() {
   return mesh;
 }
 
-/// Looks at the prism, past a block on its left that stands nearer to the eye.
+/// A wall that stands on the left nearer to the eye than the prism.
+WallDrawing leftWall() {
+  WallMesh wall;
+  for (const Vec3f& p : {Vec3f(-2, 98, 1), Vec3f(-0.25F, 98, 1), Vec3f(-0.25F, 102, 1), Vec3f(-2, 102, 1)})
+    wall.surface.vertices.push_back(p);
+  wall.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  wall.normals.assign(4, Vec3f::UnitZ());
+  return {.lines = {}, .meshes = {wall}, .nodes = {}};
+}
+
 Scene prismScene() {
   Scene scene = smallScene();
-  scene.surfaces = {
-      std::make_shared<Box>(Vec3d(-2, 98, 0.8), Vec3d(-0.25, 102, 1), Box::Fluid::outside, Rotation{})};
   scene.view.camera = {Vec3d(0, 100, 3), Vec3d(0, 100, 0), Vec3d(0, 1, 0), 20};
   scene.view.look.waterColor = {0.25, 0.5, 0.9};
   scene.view.look.waterDepth = 0.5;
@@ -202,7 +208,7 @@ std::ptrdiff_t differentBytes(const Image& a, const Image& b) {
 
 TEST_F(WaterStyle, IsTheSameAfterAnotherFrame) {
   const Scene scene = prismScene();
-  Viewer viewer(scene, Simulation(scene).walls(), options());
+  Viewer viewer(scene, leftWall(), options());
   const FrameSnapshot frame = frameOf({}, 0.1F);
   const Image first = draw(viewer, frame.view(), prism());
   draw(viewer, frame.view(), slab(0.5F, -4));
@@ -211,7 +217,7 @@ TEST_F(WaterStyle, IsTheSameAfterAnotherFrame) {
 
 TEST_F(WaterStyle, SeesWhatLiesAroundTheWater) {
   const Scene scene = prismScene();
-  Viewer viewer(scene, Simulation(scene).walls(), options());
+  Viewer viewer(scene, leftWall(), options());
   const FrameSnapshot frame = frameOf({}, 0.1F);
   // Vertices without a face, so that the water has a part in the whole picture.
   SurfaceMesh wide = prism();
