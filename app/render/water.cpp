@@ -233,7 +233,7 @@ void WaterPass::draw(const RenderTarget& target, const WaterShot& shot) {
   surface_.set("loss", shot.loss.x(), shot.loss.y(), shot.loss.z(), shot.groundHeight);
   // Rays come to anywhere in the picture.
   glDisable(GL_SCISSOR_TEST);
-  target.copyScene(toOpaque_, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  target.copyScene(toOpaque_);
   glEnable(GL_SCISSOR_TEST);
   drawLayer(toEntries_, GL_BACK, nullptr);
   drawLayer(toExits_, GL_FRONT, nullptr);
