@@ -1,6 +1,7 @@
 // Non-local means with guides, for pictures of few samples.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/raytrace/still.h"
 
@@ -21,21 +22,22 @@ constexpr int kErrors = 8, kShares = 3;
 constexpr float kLeastGuide = 2e-3F, kLeastDistance = 2e-4F;
 
 /// Means over squares of (2 radius + 1)^2 pixels, cut off at the rim.
-Channel boxMean(const Channel& from, int width, int height, int radius) {
-  Channel across(from.size()), to(from.size());
+Channel boxMean(Channel plane, int width, int height, int radius) {
+  Channel across(plane.size());
   const auto line = [radius](const float* in, float* out, int count, std::ptrdiff_t stride) {
-    float sum = 0;
-    for (int i = 0; i < std::min(radius, count); ++i) sum += in[i * stride];
+    double sum = 0;  // in float a single bright pixel would leave its rounding behind
+    for (int i = 0; i < std::min(radius, count); ++i) sum += double{in[i * stride]};
     for (int i = 0; i < count; ++i) {
-      if (i + radius < count) sum += in[(i + radius) * stride];
-      if (i - radius - 1 >= 0) sum -= in[(i - radius - 1) * stride];
+      if (i + radius < count) sum += double{in[(i + radius) * stride]};
+      if (i - radius - 1 >= 0) sum -= double{in[(i - radius - 1) * stride]};
       const int used = std::min(i + radius, count - 1) - std::max(i - radius, 0) + 1;
-      out[i * stride] = std::max(sum, 0.0F) / static_cast<float>(used);
+      out[i * stride] = static_cast<float>(std::max(sum, 0.0) / used);
     }
   };
-  for (int y = 0; y < height; ++y) line(from.data() + y * width, across.data() + y * width, width, 1);
-  for (int x = 0; x < width; ++x) line(across.data() + x, to.data() + x, height, width);
-  return to;
+  for (std::ptrdiff_t y = 0; y < height; ++y)
+    line(plane.data() + y * width, across.data() + y * width, width, 1);
+  for (int x = 0; x < width; ++x) line(across.data() + x, plane.data() + x, height, width);
+  return plane;
 }
 
 using Halves = std::array<Radiance, 2>;
@@ -52,8 +54,8 @@ std::array<std::array<Channel, 3>, 2> calibrated(const Exposure& exposure, Threa
       apart[i] = difference * difference;
       scatter[i] = variances[0][c][i] + variances[1][c][i];
     }
-    const Channel a = boxMean(apart, exposure.width, exposure.height, 5),
-                  s = boxMean(scatter, exposure.width, exposure.height, 5);
+    const Channel a = boxMean(std::move(apart), exposure.width, exposure.height, 5),
+                  s = boxMean(std::move(scatter), exposure.width, exposure.height, 5);
     for (std::size_t i = 0; i < count; ++i) {
       // Halves that are farther apart than their scatter says are so by chance.
       const float scale = s[i] > 0 ? std::min(a[i] / s[i], 1.0F) : 1.0F;
@@ -224,51 +226,77 @@ class Band {
 
 static_assert(kPatch == 3, "the sums over patches are written out");
 
-/// How far a filtered half is from the other half as it is, relative to the brightness: its error and what
-/// is the same for all strengths [RMZ].
-Channel errorsOf(const Halves& filtered, const Exposure& exposure) {
-  Channel errors(filtered[0][0].size(), 0);
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float mean = 0.5F * (filtered[0][c][i] + filtered[1][c][i]);
-      for (std::size_t half = 0; half < 2; ++half) {
-        const float difference = filtered[half][c][i] - exposure.halves[1 - half][c][i];
-        errors[i] += difference * difference / (1e-3F + mean * mean);
-      }
+/// How far filtered halves are at a pixel from the other halves as they are, relative to the brightness:
+/// their error and what is the same for all strengths [RMZ].
+float errorAt(std::size_t i, const Halves& filtered, const Exposure& exposure) {
+  float error = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float mean = 0.5F * (filtered[0][c][i] + filtered[1][c][i]);
+    for (std::size_t half = 0; half < 2; ++half) {
+      const float difference = filtered[half][c][i] - exposure.halves[1 - half][c][i];
+      error += difference * difference / (1e-3F + mean * mean);
     }
-  return boxMean(errors, exposure.width, exposure.height, kErrors);
+  }
+  return error;
+}
+
+/// What each strength makes of a picture, and how far that is off at each pixel.
+struct Filtered {
+  std::array<Radiance, kStrengths.size()> pictures;
+  std::array<Channel, kStrengths.size()> errors;
+};
+Filtered filtered(const Exposure& exposure, ThreadPool& pool) {
+  const auto variances = calibrated(exposure, pool);
+  const auto scales = guideScales(exposure, pool);
+  const auto bands = static_cast<std::size_t>((exposure.height + kBand - 1) / kBand);
+  const std::size_t count = exposure.halves[0][0].size();
+  Filtered result;
+  Halves halves;
+  for (Radiance& half : halves)
+    for (Channel& plane : half) plane.resize(count);
+  for (std::size_t s = 0; s < kStrengths.size(); ++s) {
+    pool.run(bands, [&](std::size_t band) {
+      Band(exposure, variances, scales, kStrengths[s], static_cast<int>(band) * kBand).average(halves);
+    });
+    result.errors[s].resize(count);
+    for (Channel& plane : result.pictures[s]) plane.resize(count);
+    parallelEach(pool, count, [&](std::size_t i) {
+      result.errors[s][i] = errorAt(i, halves, exposure);
+      for (std::size_t c = 0; c < 3; ++c)
+        result.pictures[s][c][i] = 0.5F * (halves[0][c][i] + halves[1][c][i]);
+    });
+  }
+  return result;
 }
 
 }  // namespace
 
 Radiance denoised(const Exposure& exposure, ThreadPool& pool) {
-  const auto variances = calibrated(exposure, pool);
-  const auto scales = guideScales(exposure, pool);
-  const auto bands = static_cast<std::size_t>((exposure.height + kBand - 1) / kBand);
-  std::array<Halves, kStrengths.size()> filtered;
-  std::array<Channel, kStrengths.size()> errors, shares;
-  for (std::size_t s = 0; s < kStrengths.size(); ++s) {
-    filtered[s] = exposure.halves;
-    pool.run(bands, [&](std::size_t band) {
-      Band(exposure, variances, scales, kStrengths[s], static_cast<int>(band) * kBand).average(filtered[s]);
+  auto [pictures, planes] = filtered(exposure, pool);
+  const auto smooth = [&](int radius) {
+    pool.run(planes.size(), [&](std::size_t s) {
+      planes[s] = boxMean(std::move(planes[s]), exposure.width, exposure.height, radius);
     });
-    errors[s] = errorsOf(filtered[s], exposure);
-    shares[s].assign(errors[s].size(), 0);
-  }
-  for (std::size_t i = 0; i < errors[0].size(); ++i) {
+  };
+  smooth(kErrors);
+  const std::size_t count = planes[0].size();
+  // From here on the planes are the shares of the strengths.
+  parallelEach(pool, count, [&](std::size_t i) {
     std::size_t best = 0;
     for (std::size_t s = 1; s < kStrengths.size(); ++s)
-      if (errors[s][i] < errors[best][i]) best = s;
-    shares[best][i] = 1;
-  }
+      if (planes[s][i] < planes[best][i]) best = s;
+    for (std::size_t s = 0; s < kStrengths.size(); ++s) planes[s][i] = s == best ? 1.0F : 0.0F;
+  });
+  smooth(kShares);
   Radiance result;
-  for (Channel& plane : result) plane.assign(errors[0].size(), 0);
-  for (std::size_t s = 0; s < kStrengths.size(); ++s) {
-    const Channel share = boxMean(shares[s], exposure.width, exposure.height, kShares);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < share.size(); ++i)
-        result[c][i] += 0.5F * share[i] * (filtered[s][0][c][i] + filtered[s][1][c][i]);
-  }
+  for (Channel& plane : result) plane.resize(count);
+  parallelEach(pool, count, [&](std::size_t i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      float sum = 0;
+      for (std::size_t s = 0; s < kStrengths.size(); ++s) sum += planes[s][i] * pictures[s][c][i];
+      result[c][i] = sum;
+    }
+  });
   return result;
 }
 

@@ -160,7 +160,10 @@ void WaterPass::drawFaces(const ShaderProgram& program, bool wet) const {
 
 void WaterPass::drawLayer(const GlFramebuffer& into, GLenum culled, const GlTexture* before) const {
   glBindFramebuffer(GL_FRAMEBUFFER, into.name());
+  // Where light leaves is also asked at pixels around the scissors' rectangle, where refracted rays come to.
+  if (culled == GL_FRONT) glDisable(GL_SCISSOR_TEST);
   glClearNamedFramebufferfv(into.name(), GL_COLOR, 0, kNothing.data());
+  glEnable(GL_SCISSOR_TEST);
   glClearNamedFramebufferfv(into.name(), GL_DEPTH, 0, &kFarthestDepth);
   glCullFace(culled);
   layer_.set("beyondLayer", before != nullptr ? 1 : 0);
@@ -228,12 +231,10 @@ void WaterPass::draw(const RenderTarget& target, const WaterShot& shot) {
   glEnable(GL_CULL_FACE);
   glBindVertexArray(layout_.name());
   surface_.set("loss", shot.loss.x(), shot.loss.y(), shot.loss.z(), shot.groundHeight);
-  // Depth is asked for where the water is.
+  // Rays come to anywhere in the picture.
   glDisable(GL_SCISSOR_TEST);
-  glClearNamedFramebufferfv(toOpaque_.name(), GL_DEPTH, 0, &kFarthestDepth);
-  target.copyScene(toOpaque_, GL_COLOR_BUFFER_BIT);
+  target.copyScene(toOpaque_);
   glEnable(GL_SCISSOR_TEST);
-  target.copyScene(toOpaque_, GL_DEPTH_BUFFER_BIT);
   drawLayer(toEntries_, GL_BACK, nullptr);
   drawLayer(toExits_, GL_FRONT, nullptr);
   drawLayer(toFarEntries_, GL_BACK, &exits_);
@@ -243,10 +244,11 @@ void WaterPass::draw(const RenderTarget& target, const WaterShot& shot) {
   glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(toOpaque_.name(), toAll_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  // Where there are several samples a pixel, some drivers let pixels beside the scissors' rectangle through.
+  glClearNamedFramebufferfv(toColors_.name(), GL_COLOR, 0, kNothing.data());
   glEnable(GL_SCISSOR_TEST);
   shade(toAll_, farEntries_, farExits_, opaque_);
   glGenerateTextureMipmap(all_.name());
-  glClearNamedFramebufferfv(toColors_.name(), GL_COLOR, 0, kNothing.data());
   shade(toColors_, entries_, exits_, all_);
 
   target.continueScene();

@@ -97,6 +97,49 @@ TEST(Denoised, TakesNoiseOutAndKeepsEdges) {
   EXPECT_LT(error(picture), 0.05 * error(noisy));
 }
 
+TEST(Denoised, TakesTheStrengthThatSuitsEachPixel) {
+  ThreadPool pool(2);
+  // Left: flat, and what guides is as noisy; right: stripes of one pixel that are hardly beyond the noise.
+  constexpr float kNoise = 0.02F, kContrast = 3 * kNoise;
+  Exposure exposure = madeUp(0.5F, 0.5F, kNoise, 128, 64);
+  RandomSequence random(4);
+  for (std::size_t i = 0; i < exposure.guides[0].size(); ++i) {
+    if (i % 128 < 64) {
+      for (std::size_t g = 0; g < Exposure::kGuides; ++g) {
+        exposure.guides[g][i] = 0.1F * static_cast<float>(std::sqrt(3.0) * (2 * random.unit() - 1));
+        exposure.guideVariances[g][i] = 0.01F;
+      }
+    } else {
+      for (auto& half : exposure.halves)
+        for (Channel& plane : half) plane[i] += i % 2 == 0 ? kContrast / 2 : -kContrast / 2;
+    }
+  }
+  const Radiance picture = denoised(exposure, pool);
+  double noise = 0, contrast = 0;
+  int flat = 0, striped = 0;
+  for (std::size_t i = 0; i < picture[1].size(); ++i) {
+    const double off = static_cast<double>(picture[1][i]) - 0.5;
+    if (i % 128 < 40) noise += off * off, ++flat;
+    if (i % 128 >= 88) contrast += i % 2 == 0 ? 2 * off : -2 * off, ++striped;
+  }
+  // The weakest strength alone leaves 16 % of the noise, the strongest 31 % of the contrast.
+  EXPECT_LT(std::sqrt(noise / flat), 0.06 * static_cast<double>(kNoise));
+  EXPECT_NEAR(contrast / striped, static_cast<double>(kContrast), 0.05 * static_cast<double>(kContrast));
+}
+
+TEST(Denoised, FarFromABrightPixelIsAsWithoutIt) {
+  ThreadPool pool(2);
+  Exposure exposure = madeUp(0.2F, 0.2F, 0.05F);
+  const Radiance without = denoised(exposure, pool);
+  exposure.halves[0][0][5 * 64 + 3] = 1e3F;
+  const Radiance with = denoised(exposure, pool);
+  for (std::size_t i = 0; i < with[1].size(); ++i) {
+    if (i % 64 >= 40 || i / 64 >= 40) {
+      ASSERT_EQ(with[1][i], without[1][i]) << i;
+    }
+  }
+}
+
 TEST(Developed, BlackIsBlackAndBrighterIsNotDarker) {
   Channel ramp;
   for (int k = 0; k < 400; ++k) ramp.push_back(0.05F * static_cast<float>(k));

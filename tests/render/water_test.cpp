@@ -2,6 +2,7 @@
 // Lambert, and what degenerate meshes do to it.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -112,11 +113,13 @@ TEST_F(WaterStyle, OutlineIsTheMeshs) {
   EXPECT_GT(shareNear(expected, found), 0.99);
 }
 
-/// A box of water from 0 to `depth` along z, wide enough to fill the picture.
-SurfaceMesh slab(float depth) {
+/// A box of water from `back` to `front` along z, by default wide enough to fill the picture.
+SurfaceMesh slab(float front, float back = 0, float halfWidth = 2) {
   SurfaceMesh mesh;
   for (int k = 0; k < 8; ++k)
-    mesh.positions.emplace_back((k & 1) != 0 ? 2 : -2, (k & 2) != 0 ? 102 : 98, (k & 4) != 0 ? depth : 0);
+    mesh.positions.emplace_back((k & 1) != 0 ? halfWidth : -halfWidth,
+                                (k & 2) != 0 ? 100 + halfWidth : 100 - halfWidth,
+                                (k & 4) != 0 ? front : back);
   const auto side = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d,
                         const Vec3f& normal) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -170,6 +173,61 @@ TEST_F(WaterStyle, NormalsThatCancelOutLeaveNoHole) {
   const Image found = draw(viewer, frameOf({}, 0.1F).view(), mesh);
   for (const std::size_t c : {0U, 1U, 2U})
     EXPECT_NEAR(found.pixel(kWidth / 2, kHeight / 2)[c], wanted.pixel(kWidth / 2, kHeight / 2)[c], 2);
+}
+
+/// Water in the middle of the picture whose front throws light to the left, out of the pixels that it covers.
+SurfaceMesh prism() {
+  SurfaceMesh mesh = slab(0.5F, 0, 0.2F);
+  for (Vec3f& normal : mesh.normals)
+    if (normal.z() > 0) normal = Vec3f(0.8F, 0, 0.6F);
+  return mesh;
+}
+
+/// A wall that stands on the left nearer to the eye than the prism.
+WallDrawing leftWall() {
+  WallMesh wall;
+  for (const Vec3f& p : {Vec3f(-2, 98, 1), Vec3f(-0.25F, 98, 1), Vec3f(-0.25F, 102, 1), Vec3f(-2, 102, 1)})
+    wall.surface.vertices.push_back(p);
+  wall.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  wall.normals.assign(4, Vec3f::UnitZ());
+  return {.lines = {}, .meshes = {wall}, .nodes = {}};
+}
+
+Scene prismScene() {
+  Scene scene = smallScene();
+  scene.view.camera = {Vec3d(0, 100, 3), Vec3d(0, 100, 0), Vec3d(0, 1, 0), 20};
+  scene.view.look.waterColor = {0.25, 0.5, 0.9};
+  scene.view.look.waterDepth = 0.5;
+  return scene;
+}
+
+std::ptrdiff_t differentBytes(const Image& a, const Image& b) {
+  return std::inner_product(a.rgba.begin(), a.rgba.end(), b.rgba.begin(), std::ptrdiff_t{0}, std::plus<>{},
+                            std::not_equal_to<>{});
+}
+
+TEST_F(WaterStyle, IsTheSameAfterAnotherFrame) {
+  const Scene scene = prismScene();
+  Viewer viewer(scene, leftWall(), options());
+  const FrameSnapshot frame = frameOf({}, 0.1F);
+  const Image first = draw(viewer, frame.view(), prism());
+  draw(viewer, frame.view(), slab(0.5F, -4));
+  EXPECT_EQ(differentBytes(first, draw(viewer, frame.view(), prism())), 0);
+}
+
+TEST_F(WaterStyle, SeesWhatLiesAroundTheWater) {
+  const Scene scene = prismScene();
+  Viewer viewer(scene, leftWall(), options());
+  const FrameSnapshot frame = frameOf({}, 0.1F);
+  // Vertices without a face, so that the water has a part in the whole picture.
+  SurfaceMesh wide = prism();
+  for (const float far : {-2.0F, 2.0F}) {
+    wide.positions.emplace_back(far, 100 + far, 0);
+    wide.normals.push_back(Vec3f::UnitZ());
+    wide.velocities.push_back(Vec3f::Zero());
+  }
+  const Image found = draw(viewer, frame.view(), prism());
+  EXPECT_EQ(differentBytes(found, draw(viewer, frame.view(), wide)), 0);
 }
 
 TEST_F(WaterStyle, ParticlesAreShownWhereThereIsNoSurface) {
