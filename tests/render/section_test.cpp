@@ -216,7 +216,7 @@ TEST_F(SectionWindow, OneAtAnAngleBeginsInTheMiddleOfAnotherView) {
   view().free = true, view().normal = {1, 1, 0};
   Scene scene = simulation_.scene();
   scene.view.clip = {.enabled = true, .axis = Axis::z, .at = 0.1};
-  viewer_.replaceScene(scene, std::nullopt);
+  viewer_.replaceScene(scene, std::nullopt, 0);
   EXPECT_EQ(view().axis, Axis::z);
   EXPECT_NEAR(view().at, view().direction().dot(scene.bounds().center()), 1e-12);
 }
