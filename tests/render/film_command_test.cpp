@@ -58,6 +58,14 @@ class FilmCommand : public testing::ProgramTest {
   }
 };
 
+/// Frames are pressed less than pictures that stay.
+void expectSamePicture(const fs::path& a, const fs::path& b) {
+  const std::optional<Image> one = readPng(a), other = readPng(b);
+  ASSERT_TRUE(one && other);
+  EXPECT_EQ(one->width, other->width);
+  EXPECT_TRUE(one->rgba == other->rgba);
+}
+
 TEST_F(FilmCommand, AnEncoderGetsAFrameForEachTimeAndKeepsTime) {
   keepingEncoder("img2webp");
   const Outcome outcome = film("out/a.webp", {"--fps", "30"});
@@ -70,7 +78,7 @@ TEST_F(FilmCommand, AnEncoderGetsAFrameForEachTimeAndKeepsTime) {
       << words();
   EXPECT_FALSE(fs::exists(base_ / "kept" / "000004.png"));
   ASSERT_EQ(run({"render", "small.json", "--out", "still", "--times", "0.1", "--size", "96x64"}).code, 0);
-  EXPECT_EQ(readAll(base_ / "kept" / "000003.png"), readAll(folder_ / "still/small_t0.100.png"));
+  expectSamePicture(base_ / "kept" / "000003.png", folder_ / "still/small_t0.100.png");
   const auto record = nlohmann::json::parse(readAll(folder_ / "out/a.webp.json"));
   EXPECT_EQ(record["film"]["frames"], 4);
   EXPECT_EQ(record["rows"][0]["time"], 0.1);
@@ -86,7 +94,7 @@ TEST_F(FilmCommand, BeginsAndEndsWhereItIsTold) {
   EXPECT_TRUE(fs::exists(base_ / "kept" / "000002.png"));
   EXPECT_FALSE(fs::exists(base_ / "kept" / "000003.png"));
   ASSERT_EQ(run({"render", "small.json", "--out", "still", "--times", "0.05", "--size", "96x64"}).code, 0);
-  EXPECT_EQ(readAll(base_ / "kept" / "000000.png"), readAll(folder_ / "still/small_t0.050.png"));
+  expectSamePicture(base_ / "kept" / "000000.png", folder_ / "still/small_t0.050.png");
   ASSERT_EQ(film("a.webp", {"--to", "0"}).code, 0) << "ffmpeg makes WebP, too";
   EXPECT_NE(words().find("libwebp_anim"), std::string::npos) << words();
 }

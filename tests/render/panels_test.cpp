@@ -3,6 +3,7 @@
 
 #include "app/platform/context.h"
 #include "app/viewer/viewer.h"
+#include "tests/render/hands.h"
 #include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
 #include "tests/support/test_effects.h"
@@ -50,8 +51,8 @@ class PanelsTest : public ::testing::Test {
 };
 
 TEST_F(PanelsTest, WaterIsABoxInTheRowOfTheColour) {
-  // Somewhere down the panels' column of such boxes.
-  for (float y = 250; y < 500 && !viewer_.view().water; y += 8) click(242, y);
+  testing::Hands hands([this](const InputState& input) { return frame(input); });
+  hands.clickOn("Water");
   EXPECT_TRUE(viewer_.view().water);
 }
 
