@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/math.h"
 #include "core/gamma/gamma_method.h"
 #include "core/walls/boundary.h"
 
@@ -246,8 +247,8 @@ double SectionRaster::steepness(int column, int row) const {
     const bool inside = c >= 0 && r >= 0 && c < plane.columns && r < plane.rows;
     return inside ? value(c, r) : std::numeric_limits<float>::quiet_NaN();
   };
-  return std::hypot(along(near(column - 1, row), near(column + 1, row)),
-                    along(near(column, row - 1), near(column, row + 1)));
+  return portable::hypot(along(near(column - 1, row), near(column + 1, row)),
+                         along(near(column, row - 1), near(column, row + 1)));
 }
 
 std::optional<float> SectionRaster::at(const Vec3d& p) const {
