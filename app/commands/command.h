@@ -105,6 +105,16 @@ std::array<int, 2> parseSize(const std::string& text, std::string_view option);
 /// InputError.
 std::vector<Override> parseVariants(const std::string& text, std::string_view option);
 
+/// Numbers with commas between them, as many as there is room for, each a coordinate that a scene can have.
+/// False where the text is anything else.
+bool readNumbers(std::string_view text, std::span<double> numbers);
+/// Throws InputError at `option` where there is a value that the range does not have.
+void requireNumber(const std::string& option, const std::optional<double>& value, const Range& range,
+                   std::string_view unit);
+/// Which of the names it is. Throws InputError at `option` where it is none.
+std::size_t requireOneOf(const std::string& option, const std::string& name,
+                         std::span<const std::string_view> names);
+
 // One line on a terminal that tells how far a run is: time, speed, time left. Nothing where there is no
 // terminal.
 

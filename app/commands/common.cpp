@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -58,6 +59,35 @@ std::optional<Number> number(std::string_view text) {
 }
 
 }  // namespace
+
+bool readNumbers(std::string_view text, std::span<double> numbers) {
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const bool last = k + 1 == numbers.size();
+    const std::size_t end = last ? text.size() : text.find(',');
+    if (end == std::string_view::npos) return false;
+    const std::optional<double> found = number<double>(text.substr(0, end));
+    if (!found || !kCoordinateRange.contains(*found)) return false;
+    numbers[k] = *found;
+    if (!last) text.remove_prefix(end + 1);
+  }
+  return true;
+}
+
+void requireNumber(const std::string& option, const std::optional<double>& value, const Range& range,
+                   std::string_view unit) {
+  if (!value || range.contains(*value)) return;
+  std::ostringstream text;
+  text << "expected a number " << range.text() << " (unit: " << unit << "), found " << *value;
+  throw InputError(option, text.str());
+}
+
+std::size_t requireOneOf(const std::string& option, const std::string& name,
+                         std::span<const std::string_view> names) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end())
+    throw InputError(option, "expected one of " + quotedList(names) + ", found \"" + name + "\"");
+  return static_cast<std::size_t>(at - names.begin());
+}
 
 std::vector<double> parseTimes(const std::string& text, std::string_view option) {
   const auto parse = [&](const std::string& part) {
@@ -268,7 +298,9 @@ fs::path freeName(const std::string& stem, const std::string& ending) {
   for (int number = 1;; ++number) {
     std::string digits = std::to_string(number);
     digits.insert(0, digits.size() < 4 ? 4 - digits.size() : 0, '0');
-    const fs::path file = stem + digits + ending;
+    fs::path file = stem;
+    file += digits;
+    file += ending;
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return file;
   }

@@ -155,7 +155,7 @@ fs::path sceneFileFor(const fs::path& file) {
   const std::string text = prettyJson(sceneAround(surface, bounds, file.filename().string()));
   // Files of one name in several folders, and another shape in the same file, have scenes of their own.
   const std::string which = hexDigits(checksum(kEmptyChecksum, text.data(), text.size())).substr(0, 8);
-  const fs::path scene = folder / (file.stem().string() + '-' + which + ".json");
+  fs::path scene = folder / (file.stem().string() + '-' + which + ".json");
   if (!fs::exists(scene)) writeTextFile(scene, text);
   return scene;
 }

@@ -1,6 +1,5 @@
 // `migiwa gamma SCENE`: gamma at given points, or as a map with its error: the paper's Figure 3.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -81,15 +80,7 @@ MapWindow windowOf(const GammaOptions& options, const Scene& scene) {
     corners = {bounds.min[window.across], bounds.min[window.up], bounds.max[window.across],
                bounds.max[window.up]};
   if (!options.window.empty()) {
-    const char* at = options.window.data();
-    const char* const end = at + options.window.size();
-    bool valid = true;
-    for (std::size_t k = 0; k < corners.size() && valid; ++k) {
-      const auto [next, error] = std::from_chars(at, end, corners[k]);
-      valid = error == std::errc() && kCoordinateRange.contains(corners[k]) &&
-              (k + 1 < corners.size() ? next != end && *next == ',' : next == end);
-      at = next + 1;
-    }
+    const bool valid = readNumbers(options.window, corners);
     if (!valid || corners[0] >= corners[2] || corners[1] >= corners[3])
       throw InputError("--window", "expected x0,y0,x1,y1 in m, the lower left corner first, found '" +
                                        options.window + "'");

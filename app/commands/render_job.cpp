@@ -41,12 +41,7 @@ void requireDistinctNames(const std::vector<double>& times) {
 
 /// What an option is that the style has no use for.
 void requireStyle(const RenderOptions& options, RenderJob& job) {
-  const auto style = std::find(kRenderStyles.begin(), kRenderStyles.end(), options.style);
-  if (style == kRenderStyles.end()) {
-    throw InputError("--style",
-                     "expected one of " + quotedList(kRenderStyles) + ", found \"" + options.style + "\"");
-  }
-  job.style = static_cast<RenderStyle>(style - kRenderStyles.begin());
+  job.style = static_cast<RenderStyle>(requireOneOf("--style", options.style, kRenderStyles));
   const bool rayTraced = job.style == RenderStyle::rayTraced;
   job.samples = options.samples.value_or(job.samples);
   job.seed = static_cast<std::uint32_t>(options.seed.value_or(0));
@@ -92,14 +87,6 @@ void requireFilmName(const std::filesystem::path& film) {
   if (!filmEncoderInstalled(film) && std::filesystem::exists(folder, ignored))
     throw InputError("--film", "expected no " + folder.string() +
                                    " yet, for without an encoder the frames go there, found one");
-}
-
-/// Throws InputError unless `value` is one that an option can have.
-void requireNumber(const char* option, double value, const Range& range, const char* unit) {
-  if (range.contains(value)) return;
-  std::ostringstream text;
-  text << "expected a number " << range.text() << " (unit: " << unit << "), found " << value;
-  throw InputError(option, text.str());
 }
 
 /// The frames of a film that ends where it is told to, or else with the scene (s).
@@ -169,7 +156,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
     collect([&] { requireFilmName(job.film->file); });
     collect([&] { requireNumber("--fps", job.film->fps, Range::positive(1000), "1/s"); });
     collect([&] { requireNumber("--from", job.film->from, Range::closed(0, kLongestRun), "s"); });
-    collect([&] { requireNumber("--to", options.to.value_or(0), Range::closed(0, kLongestRun), "s"); });
+    collect([&] { requireNumber("--to", options.to, Range::closed(0, kLongestRun), "s"); });
   }
   collect([&] { requireStyle(options, job); });
 

@@ -1,6 +1,5 @@
 // `migiwa section SCENE`: a field of the liquid on a plane, as CSV and as a picture.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -30,29 +29,6 @@ struct SectionOptions {
 
 constexpr int kCellsAcross = 512, kFewestCells = 2, kMostCells = 4096;
 constexpr int kErrorCells = 128;  ///< of the error of gamma, which takes long
-
-template <std::size_t N>
-std::size_t indexIn(const std::array<std::string_view, N>& names, const std::string& name,
-                    const char* option) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end())
-    throw InputError(option, "expected one of " + quotedList(names) + ", found \"" + name + "\"");
-  return static_cast<std::size_t>(at - names.begin());
-}
-
-/// Numbers with commas between them; false where the text is anything else.
-bool readNumbers(std::string_view text, std::span<double> numbers) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const auto [next, error] = std::from_chars(at, end, numbers[k]);
-    if (error != std::errc() || !kCoordinateRange.contains(numbers[k])) return false;
-    if (k + 1 == numbers.size()) return next == end;
-    if (next == end || *next != ',') return false;
-    at = next + 1;
-  }
-  return false;
-}
 
 /// A plane in the coordinates of the scene's file, and how it is called.
 struct Cut {
@@ -133,10 +109,12 @@ bool isOneFile(const std::string& a, const std::string& b) {
 SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
   SectionJob job;
   FaultCollector collect;
-  collect(
-      [&] { job.field = static_cast<SectionField>(indexIn(kSectionFieldNames, options.field, "--field")); });
   collect([&] {
-    job.divisor = static_cast<SectionDivisor>(indexIn(kSectionDivisorNames, options.divisor, "--divisor"));
+    job.field = static_cast<SectionField>(requireOneOf("--field", options.field, kSectionFieldNames));
+  });
+  collect([&] {
+    job.divisor =
+        static_cast<SectionDivisor>(requireOneOf("--divisor", options.divisor, kSectionDivisorNames));
   });
   collect([&] {
     if (options.csv.empty() && options.png.empty())
@@ -147,10 +125,9 @@ SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
       throw InputError("--png", "expected another file than that of --csv, found \"" + options.png + "\"");
   });
   collect([&] {
+    requireNumber("--time", options.time, Range::closed(0, kLongestRun), "s");
     job.time = options.time.value_or(0);
-    if (!(job.time >= 0 && job.time <= kLongestRun))
-      throw InputError("--time",
-                       "expected a time in [0, 1e+06] (unit: s), found " + formatNumber("%g", job.time));
+    requireReachable(scene, job.time, "--time");
     // As Simulation::frameAt() rounds.
     if (job.field == SectionField::pressure && job.time < 0.5 * scene.solver.timeStep)
       throw InputError("--time", "expected a step or more (" + formatNumber("%g", scene.solver.timeStep) +

@@ -287,10 +287,7 @@ class JobReader {
   }
 
   void seconds(const char* option, const std::optional<double>& value, const Range& range) {
-    if (!value || range.contains(*value)) return;
-    std::ostringstream message;
-    message << "expected a number " << range.text() << " (unit: s), found " << *value;
-    faults_.push_back({option, message.str()});
+    collect([&] { requireNumber(option, value, range, "s"); });
   }
 
   void needs(const char* option, bool given, const std::string& other, bool otherGiven) {

@@ -214,6 +214,7 @@ std::string convergenceSummary(const StudyPlan& plan, const std::vector<Finished
     for (const AccuracyMeasure& measure : measures) out << ' ' << tableCell(measure.title) << " |";
     out << "\n|---|" << (measures.size() > 1 ? "---|---|" : "---|") << '\n';
     std::vector<std::vector<ConvergenceLine>> columns;
+    columns.reserve(measures.size());
     for (const AccuracyMeasure& measure : measures)
       columns.push_back(convergenceOf(plan, runs, axis, measure));
     for (std::size_t k = 0; k < columns.front().size(); ++k) {

@@ -16,6 +16,7 @@ namespace {
 /// File stems, or the whole paths where two stems are the same.
 std::vector<std::string> labelsFor(const std::vector<std::string>& files) {
   std::vector<std::string> labels;
+  labels.reserve(files.size());
   for (const std::string& file : files) labels.push_back(std::filesystem::path(file).stem().string());
   auto sorted = labels;
   std::sort(sorted.begin(), sorted.end());

@@ -5,7 +5,6 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -62,13 +61,13 @@ class SurfaceCommand {
     }
     if (job.spacing && scene_)
       collect.add({"--spacing", "expected none with a scene, which has its own, found one"});
-    number(collect, "--every", job.every, Range::positive(kLongestRun), "s");
-    number(collect, "--until", job.until, Range::closed(0, kLongestRun), "s");
+    collect([&] { requireNumber("--every", job.every, Range::positive(kLongestRun), "s"); });
+    collect([&] { requireNumber("--until", job.until, Range::closed(0, kLongestRun), "s"); });
     if (scene_ && job.until && Range::closed(0, kLongestRun).contains(*job.until))
       collect([&] { requireReachable(*scene_, *job.until, "--until"); });
-    number(collect, "--spacing", job.spacing, Range::positive(1e6), "m");
-    number(collect, "--resolution", job.resolution, Range::closed(0.1, 2), "spacings");
-    number(collect, "--drop-below", job.dropBelow, Range::closed(0, 1e9), "particles");
+    collect([&] { requireNumber("--spacing", job.spacing, Range::positive(1e6), "m"); });
+    collect([&] { requireNumber("--resolution", job.resolution, Range::closed(0.1, 2), "spacings"); });
+    collect([&] { requireNumber("--drop-below", job.dropBelow, Range::closed(0, 1e9), "particles"); });
     findFormat(collect);
     if (job.forBlender && format_ != nullptr && format_->name != "ply")
       collect.add({"--for-blender", "expected --format ply with it, found " + job.format});
@@ -89,14 +88,6 @@ class SurfaceCommand {
   }
 
  private:
-  static void number(FaultCollector& collect, const char* option, const std::optional<double>& value,
-                     const Range& range, const std::string& unit) {
-    if (!value || range.contains(*value)) return;
-    std::ostringstream message;
-    message << "expected a number " << range.text() << " (unit: " << unit << "), found " << *value;
-    collect.add({option, message.str()});
-  }
-
   void findFormat(FaultCollector& collect) {
     std::vector<std::string_view> names;
     for (const SurfaceFormat& format : surfaceFormats()) {

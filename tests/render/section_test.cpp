@@ -264,6 +264,11 @@ TEST(SectionCommand, RefusesWhatItCannotDoAndSaysHow) {
             std::string::npos);
   EXPECT_NE(faultOf({"--csv", csv, "--field", "pressure"}).find("a step or more (0.005 s)"),
             std::string::npos);
+  EXPECT_NE(faultOf({"--csv", csv, "--time", "-1"}).find("--time: expected a number in [0, 1e+06]"),
+            std::string::npos);
+  EXPECT_NE(faultOf({"--csv", csv, "--time", "1e6", "--set", "/solver/time_step=1e-9"})
+                .find("--time: expected at most"),
+            std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(csv));
   std::filesystem::remove_all(folder);
 }
