@@ -80,33 +80,37 @@ void PressureSum::clear() {
 }
 
 void PressureSum::begin(const StepState& state) {
-  if (!watched_) return;
+  if (!watched_ || state.projects()) return;
   now_.assign(state.particles.size(), 0);
   before_.assign(state.particles.size(), 0);
 }
 
 void PressureSum::iterate(const StepState& state, float weight) {
-  if (!watched_) return;
+  if (!watched_ || state.projects()) return;
   parallelFor(state.pool, now_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) before_[i] += weight * (now_[i] + state.lambda[i] - before_[i]);
   });
   now_.swap(before_);
 }
 
+void PressureSum::project(const StepState& state) {
+  if (!watched_) return;
+  now_.resize(state.particles.size());
+  const float gravity = state.gravity.norm(), inverseStep = 1 / state.timeStep;
+  parallelEach(state.pool, now_.size(), [&](std::size_t i) {
+    const float slope = std::min(inverseStep * state.projection.image[i], gravity);
+    now_[i] = inverseStep * state.projection.potential[i] + 0.5F * state.spacing * slope;
+  });
+}
+
 void PressureSum::pressures(const StepState& state, std::vector<float>& out) const {
-  if (watched_ && state.projects()) {
-    const auto density = static_cast<float>(state.parameters.restDensity);
-    out.resize(state.projectedPressure.size());
-    std::transform(state.projectedPressure.begin(), state.projectedPressure.end(), out.begin(),
-                   [density](float pressure) { return density * pressure; });
-    return;
-  }
   out.resize(now_.size());
-  const double scale = -state.parameters.restDensity * static_cast<double>(state.supportRadius) *
-                       static_cast<double>(state.supportRadius) /
-                       (static_cast<double>(state.timeStep) * static_cast<double>(state.timeStep));
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<float>(scale * static_cast<double>(now_[i]));
+  double scale = state.parameters.restDensity;
+  if (!state.projects())
+    scale *= -static_cast<double>(state.supportRadius) * static_cast<double>(state.supportRadius) /
+             (static_cast<double>(state.timeStep) * static_cast<double>(state.timeStep));
+  std::transform(now_.begin(), now_.end(), out.begin(),
+                 [scale](float sum) { return static_cast<float>(scale * static_cast<double>(sum)); });
 }
 
 }  // namespace migiwa

@@ -74,8 +74,14 @@ double wallPush(const StepState& state);
 
 struct StepState;
 
-/// The sum over the iterations of a step, for each particle. As positions do, it takes part in the stretching
-/// of iterations. Costs a pass over the particles an iteration, and is off by default.
+// With a projection it is rho0 phi / dt. That is zero at the centres of the outermost particles, half a
+// spacing below the surface that a pressure is zero at; so what is said of every particle is more by the
+// pressure that its own gradient adds on half a spacing, at most that of gravity: at rest rho0 g z again, and
+// nothing in free fall.
+
+/// The pressure of each particle in a step. Off by default: with velocities from positions it is the sum over
+/// the iterations, which takes part in their stretching as positions do and costs a pass over the particles
+/// an iteration.
 class PressureSum {
  public:
   void watch(bool on);
@@ -86,12 +92,15 @@ class PressureSum {
   void begin(const StepState& state);
   /// An iteration that moves particles by the multipliers in `state`, stretched by `weight`.
   void iterate(const StepState& state, float weight);
+  /// A projection with its potential and, in `state.projection.image`, the length of the gradient.
+  void project(const StepState& state);
   /// Pressure (Pa) of each particle in the step that `state` has just made; empty unless watched.
   void pressures(const StepState& state, std::vector<float>& out) const;
 
  private:
   bool watched_ = false;
-  std::vector<float> now_, before_;  ///< sums of lambda over the squared support radius (1)
+  /// Sums of lambda over the squared support radius (1), or p / rho0 of a projection (m^2/s^2).
+  std::vector<float> now_, before_;
 };
 
 }  // namespace migiwa

@@ -241,18 +241,18 @@ PotentialSums stepProjectionOfRange(StepState& state, float unit, float keep, fl
   return {sumLanes(square), sumLanes(magnitude)};
 }
 
-/// v -= grad phi, phi being what the w of state.paired hold.
+/// v -= grad phi, phi being what the w of state.paired hold. The length of grad phi becomes the image.
 void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
   const Pairs d;
   const PairScale scale(state);
   const Float4* const others = state.paired.data();
-  const ProjectionBuffers& in = state.projection;
+  ProjectionBuffers& buffers = state.projection;
   const float toGradient = -0.5F * scale.inverseSquare;
   const bool added = state.addsWallDensity();
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(others[i], scale);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
-    const InverseMoment& inverse = in.inverse[i];
+    const InverseMoment& inverse = buffers.inverse[i];
     const float phi = others[i].w;
     // Either the difference to the particle's own, or the sum with it.
     const PairVector own = hn::Set(d, inverse.sound ? -phi : phi);
@@ -273,6 +273,7 @@ void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end)
       const float fall = (added ? 1 : state.density[i]) * phi * scale.inverseSupport;
       gradient -= fall * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
     }
+    buffers.image[i] = gradient.norm();
     Float4& velocity = state.particles.velocity[i];
     velocity = Float4(Vec3f(velocity.xyz() - gradient));
   }
@@ -345,10 +346,13 @@ class PotentialSolve {
     };
     constexpr double kLeft = 0.2;  // of the divergence that the pressure of the step before leaves
     const double enough = std::max(parameters.divergenceTolerance, kLeft * mean());
-    double along = 0, before = 0;
+    // Fluid that walls leave no room has no solution, and what is left of its equation grows without end.
+    constexpr double kMostGrowth = 4;
+    double along = 0, before = 0, least = left_.square;
     state_.pressureIterations = 0;
     while (state_.pressureIterations < parameters.maxPressureIterations && left_.square > 0 &&
-           mean() > enough) {
+           mean() > enough && left_.square < kMostGrowth * kMostGrowth * least) {
+      least = std::min(least, left_.square);
       const double keep = state_.pressureIterations > 0 ? left_.square / before : 0;
       const double product = apply() - (along != 0 ? keep * left_.square / along : 0);
       if (!(product > 0)) break;
@@ -464,6 +468,7 @@ void stages::projectVelocities(StepState& state) {
   const auto push = HWY_DYNAMIC_DISPATCH(pushProjectionOfRange);
   parallelFor(state.pool, n,
               [&](std::size_t begin, std::size_t end, std::size_t) { push(state, begin, end); });
+  state.pressure.project(state);
   if (state.boundary.moves()) state.wallWork.add(pressureWork(state));
 }
 

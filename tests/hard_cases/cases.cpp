@@ -1,6 +1,7 @@
 // The table of cases. Bounds are what mechanics says of the scene; that of the energy follows from the start.
 #include <cstdlib>
 #include <numbers>
+#include <set>
 
 #include "tests/hard_cases/hard_case.h"
 
@@ -126,6 +127,15 @@ void addBrokenMeshes(std::vector<HardCase>& cases) {
   cases.push_back(holed);
 }
 
+/// What does not hold all that it states with velocities by projection: "What falls short" in README.md.
+bool shortByProjection(const std::string& name) {
+  static const std::set<std::string> kShort{
+      "lone_corner", "lone_wedge",   "particles_3",  "rest",          "gravity_1000", "gap_2",
+      "gap_1",       "gap_0.5",      "overlap_1",    "lid_with_slit", "dam",          "one_iteration",
+      "tolerance_0", "spacing_tiny", "spacing_huge", "far_origin",    "column",       "slim_shell_crossing"};
+  return kShort.contains(name);
+}
+
 }  // namespace
 
 std::vector<HardCase> hardCases() {
@@ -160,6 +170,7 @@ std::vector<HardCase> hardCases() {
   cases.push_back(guarded(resting(timed("rest", std::getenv("MIGIWA_SOAK") != nullptr ? 5000 : 100, 1), 0.02),
                           "energy_held"));
   cases.push_back(timed("one_kilometre", 0.5, 10));
+  for (HardCase& hardCase : cases) hardCase.byProjection = !shortByProjection(hardCase.name);
   return cases;
 }
 

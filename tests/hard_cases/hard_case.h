@@ -60,6 +60,7 @@ struct HardCase {
   Fill fill;                               ///< of a part of the scene
   int copies = 1;                          ///< times that the scene's fluid is there
   bool everyMethod = false;                ///< also with other gamma methods than the scene's
+  bool byProjection = true;                ///< also with velocities by projection
   std::vector<std::string> guards;         ///< that have to act, and no other ones but `coincident`
 };
 

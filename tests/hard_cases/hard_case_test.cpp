@@ -8,6 +8,7 @@
 
 #include "core/base/messages.h"
 #include "core/scene/scene_file.h"
+#include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
 namespace {
@@ -60,6 +61,27 @@ std::vector<HardCase> casesOfEveryMethod() {
   return cases;
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryMethod, ::testing::ValuesIn(casesOfEveryMethod()),
+                         [](const auto& one) { return testName(one.param); });
+
+class ByProjection : public ::testing::TestWithParam<HardCase> {};
+
+// With velocities by projection, and what goes with them. Which guards have to act is not stated.
+TEST_P(ByProjection, KeepsWhatTheCaseStates) {
+  Scene scene = sceneOf(GetParam());
+  scene.solver.takeVelocities(VelocityStep::projection);
+  scene.effects = effectsOf(R"({"viscosity": {"xsph": 0, "affine_xsph": 0.3}})");
+  Observed seen = observe(scene, GetParam().until, 1);
+  seen.guards = GetParam().guards;
+  for (const std::string& violation : violations(GetParam(), seen)) ADD_FAILURE() << violation;
+}
+
+std::vector<HardCase> casesByProjection() {
+  std::vector<HardCase> cases;
+  for (const HardCase& hardCase : hardCases())
+    if (hardCase.byProjection) cases.push_back(hardCase);
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, ByProjection, ::testing::ValuesIn(casesByProjection()),
                          [](const auto& one) { return testName(one.param); });
 
 /// In the soak alone: the same bits with any number of threads, and no method of gamma that loses a particle,
