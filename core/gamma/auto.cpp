@@ -58,20 +58,21 @@ class AutoGamma final : public GammaMethod {
 
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out) const override {
     if (curved_) return methods_[kCurved]->evaluate(points, out);
-    // Gathered by method, so that each has a batch.
-    std::array<std::vector<std::size_t>, kPicks> picked;
+    // Gathered by method, so that each has a batch. Batches are short: the memory stays.
+    thread_local Gathered gathered;
+    auto& [picked, others, at, samples, walls] = gathered;
+    for (std::vector<std::size_t>& those : picked) those.clear();
     if (flat_) {
       methods_[kProduct]->evaluate(points, out);
       if (flat_->rightAngled()) return;
       for (std::size_t i = 0; i < points.size(); ++i)
         if (flat_->obliqueAt(points[i].xyz())) picked[kFacets].push_back(i);
     } else {
-      HalfSpaces walls;
       const auto choose = [&](std::size_t i) {
-        if (out[i].distance < support_) picked[pick(points[i].xyz(), walls)].push_back(i);
+        if (out[i].distance < support_) gathered.picked[pick(points[i].xyz(), gathered.walls)].push_back(i);
       };
       if (blocks_ != nullptr) {
-        std::vector<std::size_t> others;
+        others.clear();
         blocks_->evaluate(points, out, others);
         std::for_each(others.begin(), others.end(), choose);
       } else {
@@ -79,8 +80,6 @@ class AutoGamma final : public GammaMethod {
         for (std::size_t i = 0; i < points.size(); ++i) choose(i);
       }
     }
-    std::vector<Float4> at;
-    std::vector<GammaSample> samples;
     for (std::size_t method = 0; method < picked.size(); ++method) {
       if (picked[method].empty()) continue;
       at.clear();
@@ -142,6 +141,17 @@ class AutoGamma final : public GammaMethod {
   }
 
  private:
+  /// The points of a batch by what they go to.
+  struct Gathered {
+    std::array<std::vector<std::size_t>, kPicks> picked;
+    std::vector<std::size_t> others;  ///< that blocks_ leaves
+    // Of one pick:
+    std::vector<Float4> at;
+    std::vector<GammaSample> samples;
+    // Of one point:
+    HalfSpaces walls;
+  };
+
   /// A grid about the curved walls; null where there are none, or too large ones.
   static std::unique_ptr<GridGamma> makeAboutCurves(GammaContext context) {
     Bounds curves;

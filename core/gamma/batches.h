@@ -65,8 +65,10 @@ struct EdgeIntegrals {
   float area, pairArea;  ///< integral of K(r) over the angle
   float unused;
 };
-/// Fills one result for each edge. Both are filled up to whole vectors.
-void integrate(KernelType kernel, std::vector<PolygonEdge>& edges, std::vector<EdgeIntegrals>& results);
+/// So many edges are taken at once.
+inline constexpr std::size_t kEdgeGroup = 8;
+/// Fills one result for each edge, of whole groups.
+void integrate(KernelType kernel, std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results);
 
 // gamma about thin upright blocks that stand apart as a point sees them: the sums of facets.cpp, without its
 // search for what hides what.

@@ -117,15 +117,16 @@ class BlockFacets final : public BlockGamma {
     std::size_t count = 0;  ///< of the blocks
   };
 
+  /// All that it calls is put in its place: it is asked of every particle.
   /// Measures how near walls are. Whether there are thin blocks alone in reach, apart from each other, the
   /// rim of one among them, all within the tanks that are in reach, too.
-  bool look(const Vec3f& p, Scratch& scratch, float& distance) const {
+  [[gnu::flatten]] bool look(const Vec3f& p, Scratch& scratch, float& distance) const {
     const float inverse = 1 / support_, square = support_ * support_;
     float squared = std::numeric_limits<float>::infinity(), walls = squared;
     scratch.count = 0;
     scratch.tanks.clear();
     bool alone = true;
-    for (const auto& [surface, block] : boundary_.near(p, support_)) {
+    for (const auto& [surface, block, vessel] : boundary_.near(p, support_)) {
       const float own = block != nullptr ? block->squaredDistance(p) : 0;
       if (own > 0) {
         squared = std::min(squared, own);
@@ -135,7 +136,7 @@ class BlockFacets final : public BlockGamma {
         continue;
       }
       Vec3f ignored;
-      const float wall = surface->distance(p, ignored);
+      const float wall = vessel != nullptr ? vessel->distance(p) : surface->distance(p, ignored);
       walls = std::min(walls, wall);
       if (wall >= support_ || !alone) continue;
       alone = surface->planar() && surface->pieceRule() == PieceRule::fluidInsideAll;
@@ -213,7 +214,7 @@ class BlockFacets final : public BlockGamma {
 std::unique_ptr<BlockGamma> makeBlockGamma(const GammaContext& context) {
   const auto& surfaces = context.boundary.surfaces();
   if (std::none_of(surfaces.begin(), surfaces.end(), [&](const auto& surface) {
-        return surface->upright() != nullptr && surface->thickness() < context.supportRadius;
+        return surface->uprightBlock() != nullptr && surface->thickness() < context.supportRadius;
       }))
     return nullptr;
   return withKernel(context.kernel, [&](auto kernel) -> std::unique_ptr<BlockGamma> {

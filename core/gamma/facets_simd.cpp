@@ -110,7 +110,7 @@ HWY_INLINE V sumOf(const std::array<float, kPowers>& terms, const std::array<V, 
 }
 
 void edgesBatch(std::span<const EdgeTerms> own, std::span<const EdgeTerms> pair,
-                const std::vector<PolygonEdge>& edges, std::vector<EdgeIntegrals>& results) {
+                std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results) {
   const D d;
   const V zero = hn::Zero(d), overFour = hn::Set(d, 0.25F / kPiF), overTwo = hn::Set(d, 0.5F / kPiF);
   for (std::size_t k = 0; k < edges.size(); k += hn::Lanes(d)) {
@@ -218,11 +218,7 @@ const KernelEdges& edgesOf(KernelType kernel) {
 
 static_assert(sizeof(PolygonEdge) == 4 * sizeof(float) && sizeof(EdgeIntegrals) == 4 * sizeof(float));
 
-void integrate(KernelType kernel, std::vector<PolygonEdge>& edges, std::vector<EdgeIntegrals>& results) {
-  constexpr std::size_t kGroup = 8;
-  // Filled up with edges without length.
-  edges.resize((edges.size() + kGroup - 1) / kGroup * kGroup, PolygonEdge{});
-  results.resize(edges.size());
+void integrate(KernelType kernel, std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results) {
   const KernelEdges& terms = edgesOf(kernel);
   HWY_DYNAMIC_DISPATCH(edgesBatch)(terms.own, terms.pair, edges, results);
 }

@@ -28,42 +28,37 @@ inline constexpr float kClearOfFacets = 1e-4F;
 template <class Kernel>
 class PolygonSums {
  public:
-  void clear() {
-    edges_.clear();
-    owners_.clear();
-  }
+  void clear() { count_ = 0; }
 
   /// Adds `sign` times the integrals over a polygon in a plane at `distance` to sample `i`, which is
   /// `sample`; and, if `open`, those over the sides of the cone behind it. False where it is out of reach.
   bool add(std::size_t i, const Polygon& polygon, const Vec3f& normal, float distance, float sign, bool open,
            GammaSample& sample) {
     const float height = std::abs(distance), side = distance < 0 ? -sign : sign;
-    const std::size_t before = owners_.size();
+    makeRoom(2 * static_cast<std::size_t>(polygon.count));
+    const std::size_t before = count_;
     bool within = true;
     for (int k = 0; k < polygon.count; ++k) {
       const Vec3f &a = polygon.corner(k), way = polygon.corner(k + 1) - a;
       const float length = way.norm();
-      if (length < 1e-7F) continue;
+      if (length < kShort) continue;
       const Vec3f along = way / length, inwards = normal.cross(along);
       const float inside = -a.dot(inwards), from = a.dot(along);
       const float half2 = 1 - height * height - inside * inside;
       if (inside < 0) {
         within = false;
         if (half2 <= 0) {
-          owners_.resize(before);
-          edges_.resize(before);
+          count_ = before;
           return false;
         }
       }
       float start = 0, end = 0;
       if (!endsOf(from, length, half2, start, end)) continue;
-      edges_.push_back({height, inside, start, end});
-      owners_.push_back({i, side, sign * normal});
+      put({height, inside, start, end}, {i, side, sign * normal});
       if (!open) continue;
       const float least = std::sqrt(1 - half2);
       if (least < kFacetRounding) continue;
-      edges_.push_back({0, least, start, end});
-      owners_.push_back({i, 0, sign / least * (distance * inwards - inside * normal)});
+      put({0, least, start, end}, {i, 0, sign / least * (distance * inwards - inside * normal)});
     }
     if (within) addPlane(normal, height, side, sign, sample);
     return true;
@@ -73,42 +68,36 @@ class PolygonSums {
   /// `high`; `side`: 1 for the upper one, -1.
   bool addFace(std::size_t i, const Vec3f& low, const Vec3f& high, int axis, float side, float distance,
                GammaSample& sample) {
-    // The edges counter-clockwise as the point sees them.
+    // The edges counter-clockwise as the point sees them, all four at a time.
     const int one = (axis + (side > 0 ? 1 : 2)) % 3, other = (axis + (side > 0 ? 2 : 1)) % 3;
-    const Vec3f lengths = high - low;
-    struct Edge {
-      float inside, from, length;
-      int across;     ///< the axis
-      float inwards;  ///< along it
-    };
-    const Edge edges[4] = {{-low[other], low[one], lengths[one], other, 1},
-                           {high[one], low[other], lengths[other], one, -1},
-                           {high[other], -high[one], lengths[one], other, -1},
-                           {-low[one], -high[other], lengths[other], one, 1}};
-    float half2[4];
-    bool within = true;
-    for (int k = 0; k < 4; ++k) {
-      half2[k] = 1 - distance * distance - edges[k].inside * edges[k].inside;
-      if (edges[k].inside >= 0 || edges[k].length < 1e-7F) continue;
-      if (half2[k] <= 0) return false;
-      within = false;
+    const float longOne = high[one] - low[one], longOther = high[other] - low[other];
+    const Quad insides(-low[other], high[one], high[other], -low[one]),
+        froms(low[one], low[other], -high[one], -high[other]),
+        lengths(longOne, longOther, longOne, longOther);
+    const Quad half2 = 1 - distance * distance - insides * insides;
+    const bool within = insides.minCoeff() >= 0;
+    const bool apart = std::min(longOne, longOther) < kShort;
+    if (!within) {
+      for (int k = 0; k < 4; ++k)
+        if (insides[k] < 0 && half2[k] <= 0 && lengths[k] >= kShort) return false;
     }
+    const Quad half = roots(half2.max(0.0F)), leasts = roots(1 - half2);
+    const Quad starts = froms.max(-half), ends = (froms + lengths).min(half);
+    const int across[4] = {other, one, other, one};
+    const float inwards[4] = {1, -1, -1, 1};
+    makeRoom(8);
     Vec3f normal = Vec3f::Zero();
     normal[axis] = side;
     for (int k = 0; k < 4; ++k) {
-      const Edge& edge = edges[k];
-      float start = 0, end = 0;
-      if (edge.length < 1e-7F || !endsOf(edge.from, edge.length, half2[k], start, end)) continue;
-      edges_.push_back({distance, edge.inside, start, end});
-      owners_.push_back({i, 1, normal});
-      const float least = std::sqrt(1 - half2[k]);
-      if (least < kFacetRounding) continue;
-      edges_.push_back({0, least, start, end});
-      Owner& cone = owners_.emplace_back(Owner{i, 0, Vec3f::Zero()});
-      cone.normal[axis] = 1 / least * -(edge.inside * side);
-      cone.normal[edge.across] = 1 / least * (distance * edge.inwards);
+      if (!(half2[k] > 0 && starts[k] < ends[k]) || (apart && lengths[k] < kShort)) continue;
+      put({distance, insides[k], starts[k], ends[k]}, {i, 1, normal});
+      if (leasts[k] < kFacetRounding) continue;
+      Vec3f cone = Vec3f::Zero();
+      cone[axis] = 1 / leasts[k] * -(insides[k] * side);
+      cone[across[k]] = 1 / leasts[k] * (distance * inwards[k]);
+      put({0, leasts[k], starts[k], ends[k]}, {i, 0, cone});
     }
-    if (within) addPlane(normal, distance, 1, 1, sample);
+    if (within || (apart && allWithin(insides, lengths))) addPlane(normal, distance, 1, 1, sample);
     return true;
   }
 
@@ -141,8 +130,12 @@ class PolygonSums {
 
   /// Integrates along all edges, and adds what that gives to the samples.
   void finish(KernelType kernel, std::span<GammaSample> samples) {
-    integrate(kernel, edges_, results_);
-    for (std::size_t k = 0; k < owners_.size(); ++k) {
+    // Filled up to whole vectors by edges without length.
+    const std::size_t filled = (count_ + kEdgeGroup - 1) / kEdgeGroup * kEdgeGroup;
+    makeRoom(filled - count_);
+    std::fill(edges_.data() + count_, edges_.data() + filled, PolygonEdge{});
+    integrate(kernel, std::span(edges_).first(filled), std::span(results_).first(filled));
+    for (std::size_t k = 0; k < count_; ++k) {
       const Owner& owner = owners_[k];
       GammaSample& sample = samples[owner.sample];
       sample.gamma += owner.flux * results_[k].flux;
@@ -158,6 +151,30 @@ class PolygonSums {
     float flux;    ///< sign, 0 for the side of a cone
     Vec3f normal;  ///< with the sign
   };
+
+  /// An edge is none that is shorter.
+  static constexpr float kShort = 1e-7F;
+  /// A value of each edge of a rectangle.
+  using Quad = Eigen::Array4f;
+
+  /// Exact; those of Eigen are not the same on all processors.
+  static Quad roots(const Quad& of) {
+    return {std::sqrt(of[0]), std::sqrt(of[1]), std::sqrt(of[2]), std::sqrt(of[3])};
+  }
+  static bool allWithin(const Quad& insides, const Quad& lengths) {
+    return (insides >= 0 || lengths < kShort).all();
+  }
+
+  /// For so many more edges.
+  void makeRoom(std::size_t more) {
+    if (count_ + more <= edges_.size()) return;
+    const std::size_t size = 2 * (count_ + more + kEdgeGroup);
+    edges_.resize(size), owners_.resize(size), results_.resize(size);
+  }
+  void put(const PolygonEdge& edge, const Owner& owner) {
+    edges_[count_] = edge;
+    owners_[count_++] = owner;
+  }
 
   /// Where an edge is in the support, half2 the squared half of its line there. False where it is not.
   static bool endsOf(float from, float length, float half2, float& start, float& end) {
@@ -195,6 +212,8 @@ class PolygonSums {
     return seen;
   }
 
+  // As long as they have ever been; the first count_ are there.
+  std::size_t count_ = 0;
   std::vector<PolygonEdge> edges_;
   std::vector<EdgeIntegrals> results_;
   std::vector<Owner> owners_;  ///< of the edges

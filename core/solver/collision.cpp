@@ -42,13 +42,12 @@ void suppressPush(StepState& state, std::size_t i, const Vec3f& came, const Vec3
                               Push& push) {
   Vec3f p = state.current[i].xyz();
   // A wall may be in its way unless there is more room at one end than the way is long.
-  const float clearance = knownClearance(state, i, p);
-  const auto longerThan = [&](float room) {
-    return !(room >= kAmple * state.boundary.steepness() * (p - from.xyz()).norm());
-  };
-  const bool barred = !state.collisionWalls.empty() && longerThan(clearance - state.wallMargin()) &&
-                      longerThan(knownClearance(state, i, from.xyz()));
-  if (!barred && clearance >= kAmple * state.wallMargin()) return;
+  bool barred = false;
+  if (!state.collisionWalls.empty()) {
+    const float way = kAmple * state.boundary.steepness() * (p - from.xyz()).norm();
+    barred = !knownFarther(state, i, p, state.wallMargin() + way) && !knownFarther(state, i, from.xyz(), way);
+  }
+  if (!barred && knownFarther(state, i, p, kAmple * state.wallMargin())) return;
   if (!p.allFinite()) return;  // no wall has a place for it; the step is about to be refused
   const Vec3f came = p;
   if (barred) p = clipMove(state.collisionWalls, from.xyz(), stepBegan, p, state.wallMargin());
@@ -84,8 +83,10 @@ void projectEach(StepState& state, std::size_t count, const One& one) {
 }  // namespace
 
 void projectNearWalls(StepState& state) {
+  const UprightVessel* const vessel = state.boundary.onlyVessel();
   projectEach(state, state.wallSlots.size(), [&](std::size_t k, Push& push) {
     const std::uint32_t i = state.wallSlots[k].particle;
+    if (vessel != nullptr && vessel->holds(state.current[i].xyz(), state.wallMargin())) return;
     project(state, i, state.previous[i], false, push);
   });
 }
@@ -93,8 +94,11 @@ void projectNearWalls(StepState& state) {
 void projectAll(StepState& state) {
   if (state.boundary.empty()) return;
   state.wallSlot.resize(state.particles.size(), FluidState::kNoWall);
-  projectEach(state, state.particles.size(),
-              [&](std::size_t i, Push& push) { project(state, i, state.particles.position[i], true, push); });
+  const UprightVessel* const vessel = state.boundary.onlyVessel();
+  projectEach(state, state.particles.size(), [&](std::size_t i, Push& push) {
+    if (vessel != nullptr && vessel->holds(state.current[i].xyz(), state.wallMargin())) return;
+    project(state, i, state.particles.position[i], true, push);
+  });
 }
 
 }  // namespace migiwa::stages
@@ -121,7 +125,7 @@ WallIndex collisionWalls(const Boundary& boundary, float supportRadius) {
 Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const Vec3f& to, float margin) {
   Vec3f held = to, normal;
   const float length = (to - from).norm();
-  for (const auto& [wall, block] : length < walls.reach() ? walls.near(from, length) : walls.all()) {
+  for (const auto& [wall, block, vessel] : length < walls.reach() ? walls.near(from, length) : walls.all()) {
     if (block != nullptr && block->farther(from, (held - from).norm())) continue;
     const Vec3f start = stepBegan ? wall->carried(from) : from;
     float entry = 0;

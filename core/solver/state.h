@@ -227,6 +227,22 @@ inline float knownClearance(const StepState& state, std::size_t i, const Vec3f& 
   return std::max(clearance, 0.0F);
 }
 
+/// Whether that distance is known to be at least `wanted` (m).
+inline bool knownFarther(const StepState& state, std::size_t i, const Vec3f& p, float wanted) {
+  const Boundary& boundary = state.boundary;
+  if (!boundary.steady()) return wanted <= 0;
+  const auto enough = [&](const Float4& there, float clearance) {
+    const float spare = clearance - wanted;
+    const float steepness = boundary.steepness();
+    return spare >= 0 && steepness * steepness * (p - there.xyz()).squaredNorm() <= spare * spare;
+  };
+  const Float4& start = state.particles.position[i];
+  if (enough(start, start.w)) return true;
+  const std::uint32_t slot = state.wallSlot[i];
+  return slot != FluidState::kNoWall &&
+         enough(state.wallSlots[slot].at, state.wallSlots[slot].sample.distance);
+}
+
 // Chebyshev semi-iteration (Golub & Varga 1961; Wang 2015 for position based methods): every Jacobi-like step
 // is stretched away from the iterate before the last, x_{k+1} = x_{k-1} + w_k (step(x_k) - x_{k-1}).
 

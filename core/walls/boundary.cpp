@@ -71,7 +71,7 @@ Vec3f Boundary::nearestVelocity(const Vec3f& p) const {
 float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
   float nearest = std::numeric_limits<float>::infinity();
   normal.setZero();
-  for (const auto& [surface, block] : near(p)) {
+  for (const auto& [surface, block, vessel] : near(p)) {
     if (block != nullptr && block->farther(p, nearest)) continue;
     Vec3f n;
     const float d = surface->distance(p, n);
@@ -83,22 +83,24 @@ float Boundary::distance(const Vec3f& p, Vec3f& normal) const {
   return nearest;
 }
 
-float Boundary::distance(const Vec3f& p) const {
+// All that these two call is put in its place: particles at walls ask them several times a step.
+
+[[gnu::flatten]] float Boundary::distance(const Vec3f& p) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   float nearest = kInfinity, squared = kInfinity;  // squared: of blocks that p is outside of
-  for (const auto& [surface, block] : near(p)) {
+  for (const auto& [surface, block, vessel] : near(p)) {
     if (block != nullptr) {
       const float own = block->squaredDistance(p);
       squared = std::min(squared, own > 0 ? own : squared);
       if (own > 0) continue;
     }
     Vec3f ignored;
-    nearest = std::min(nearest, surface->distance(p, ignored));
+    nearest = std::min(nearest, vessel != nullptr ? vessel->distance(p) : surface->distance(p, ignored));
   }
   return std::min(nearest, std::sqrt(squared));
 }
 
-bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
+[[gnu::flatten]] bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
   // Each surface in turn until none moves the point. Where surfaces leave no room the point swings between
   // them, and the mean of the last swing lies midway.
   constexpr int kRounds = 16;
@@ -109,10 +111,10 @@ bool Boundary::projectInTurn(Vec3f& p, float margin, bool& fits) const {
     Vec3f sum = Vec3f::Zero();
     int moves = 0;
     float farthest = 0;
-    for (const auto& [surface, block] : near(p, margin)) {
-      if (block != nullptr && block->farther(p, margin)) continue;
+    for (const IndexedWall& wall : near(p, margin)) {
+      if (wall.block != nullptr && wall.block->farther(p, margin)) continue;
       const Vec3f before = p;
-      if (!surface->project(p, margin)) continue;
+      if (!wall.project(p, margin)) continue;
       farthest = std::max(farthest, (p - before).norm());
       sum += p;
       ++moves;

@@ -47,6 +47,10 @@ class Boundary {
   }
 
   bool empty() const { return surfaces_.empty(); }
+  /// The upright vessel that is all there is; null: there is none, or more.
+  const UprightVessel* onlyVessel() const {
+    return surfaces_.size() == 1 ? surfaces_.front()->uprightVessel() : nullptr;
+  }
   const std::vector<std::shared_ptr<const Surface>>& surfaces() const { return surfaces_; }
 
   /// Distance to the nearest wall (m), positive in the fluid, infinite without walls; and its normal.

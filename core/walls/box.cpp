@@ -43,7 +43,7 @@ inline Vec3f Box::toLocal(const Vec3f& p) const {
 }
 
 inline Vec3f Box::toWorld(const Vec3f& local) const {
-  return center_ + toLocal_.transpose() * local;
+  return turned_ ? Vec3f(center_ + toLocal_.transpose() * local) : Vec3f(center_ + local);
 }
 
 void Box::prepare() {
@@ -54,9 +54,14 @@ void Box::prepare() {
   turned_ = toLocal_ != Eigen::Matrix3f::Identity();
   for (int index = 0; index < 8; ++index)
     corners_[static_cast<std::size_t>(index)] = corner(index).cast<float>();
-  upright_.reset();
-  if (fluid_ == Fluid::outside && !turned_)
-    upright_ = UprightBlock{center_, half_, corners_.front(), corners_.back()};
+  block_.reset();
+  vessel_.reset();
+  if (turned_) return;
+  if (fluid_ == Fluid::inside) {
+    vessel_ = UprightVessel{center_, half_};
+  } else {
+    block_ = UprightBlock{center_, half_, corners_.front(), corners_.back()};
+  }
 }
 
 float Box::distance(const Vec3f& p, Vec3f& normal) const {
@@ -82,27 +87,10 @@ float Box::distance(const Vec3f& p, Vec3f& normal) const {
 
 bool Box::project(Vec3f& p, float margin) const {
   Vec3f local = toLocal(p);
-  if (fluid_ == Fluid::inside) {
-    const Vec3f room = (half_.array() - margin).max(0.0F);  // zero: no room, stay midway
-    const Vec3f clamped = local.cwiseMax(-room).cwiseMin(room);
-    if (clamped == local) return false;
-    p = toWorld(clamped);
-    return true;
-  }
-  const Vec3f beyond = local.cwiseAbs() - half_;
-  if (beyond.maxCoeff() > 0) {
-    const Vec3f positive = beyond.cwiseMax(0.0F);
-    const float outside = positive.norm();
-    if (outside >= margin) return false;
-    for (int axis = 0; axis < 3; ++axis)
-      local[axis] += std::copysign(positive[axis] * (margin / outside - 1), local[axis]);
-  } else {
-    int axis = 0;
-    beyond.maxCoeff(&axis);
-    local[axis] = std::copysign(half_[axis] + margin, local[axis]);
-  }
-  p = toWorld(local);
-  return true;
+  const bool moved =
+      fluid_ == Fluid::inside ? pullIntoBox(local, half_, margin) : pushOutOfBox(local, half_, margin);
+  if (moved) p = toWorld(local);
+  return moved;
 }
 
 void Box::otherWaysOut(const Vec3f& p, float margin, std::vector<Vec3f>& out) const {

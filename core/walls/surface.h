@@ -16,6 +16,7 @@
 #include "core/base/fields.h"
 #include "core/base/math.h"
 #include "core/slim/points.h"
+#include "core/walls/upright.h"
 
 namespace migiwa {
 
@@ -150,26 +151,6 @@ struct ClosedForm {
   bool fluidInside = false;
 };
 
-/// An upright block with the fluid around it: what a wall that is one is asked most is answered without a
-/// virtual call. All in m.
-struct UprightBlock {
-  Vec3f center, half;  ///< half: of its edges
-  Vec3f low, high;     ///< corners
-
-  float thickness() const { return 2 * half.minCoeff(); }
-  /// How far p is beyond the faces across each axis; negative: within.
-  Vec3f beyond(const Vec3f& p) const { return (p - center).cwiseAbs() - half; }
-  /// The way (m) to p from the nearest point of the block; zero inside.
-  Vec3f away(const Vec3f& p) const { return p - p.cwiseMax(low).cwiseMin(high); }
-  /// Squared distance (m^2) of a point outside; 0 inside.
-  float squaredDistance(const Vec3f& p) const { return beyond(p).cwiseMax(0.0F).squaredNorm(); }
-  /// Whether p is certainly farther away than `distance` (m), rounding included.
-  bool farther(const Vec3f& p, float distance) const {
-    constexpr float kSurely = 1.0001F;
-    return squaredDistance(p) > kSurely * distance * distance;
-  }
-};
-
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -280,8 +261,9 @@ class Surface {
 
   /// Nothing for other shapes.
   virtual std::optional<ClosedForm> closedForm() const { return std::nullopt; }
-  /// Null for other walls.
-  const UprightBlock* upright() const { return upright_ ? &*upright_ : nullptr; }
+  // Null for other walls.
+  const UprightBlock* uprightBlock() const { return block_ ? &*block_ : nullptr; }
+  const UprightVessel* uprightVessel() const { return vessel_ ? &*vessel_ : nullptr; }
 
   /// The finite extent, empty for a surface without one.
   virtual Bounds bounds() const = 0;
@@ -295,7 +277,8 @@ class Surface {
   virtual const BoxGeometry* tank() const { return nullptr; }
 
  protected:
-  std::optional<UprightBlock> upright_;
+  std::optional<UprightBlock> block_;
+  std::optional<UprightVessel> vessel_;
 };
 
 /// Moves p along the normals of a surface until it is at `margin` (m), or midway between two of its parts

@@ -26,10 +26,11 @@ WallIndex::WallIndex(const std::vector<const Surface*>& walls) : all_(walls.size
   std::iota(all_.begin(), all_.end(), 0U);
   std::vector<UprightBlock> blocks;
   for (const Surface* wall : walls)
-    if (const UprightBlock* block = wall->upright()) blocks.push_back(*block);
+    if (const UprightBlock* block = wall->uprightBlock()) blocks.push_back(*block);
   blocks_ = std::make_shared<const std::vector<UprightBlock>>(std::move(blocks));
   const UprightBlock* next = blocks_->data();
-  for (const Surface* wall : walls) walls_.push_back({wall, wall->upright() != nullptr ? next++ : nullptr});
+  for (const Surface* wall : walls)
+    walls_.push_back({wall, wall->uprightBlock() != nullptr ? next++ : nullptr, wall->uprightVessel()});
 }
 
 WallIndex::WallIndex(const std::vector<const Surface*>& walls, float reach, bool nearestToo)
@@ -47,6 +48,7 @@ WallIndex::WallIndex(const std::vector<const Surface*>& walls, float reach, bool
   inverseCell_ = 1 / cell_;
   origin_ = bounds.min.cast<float>();
   size_ = (extent / edge).array().floor().cast<int>() + 1;
+  end_ = size_.cast<float>();
   cells_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                 static_cast<std::size_t>(size_.z()));
   Known known;
@@ -62,15 +64,18 @@ void WallIndex::fill(const Block& block, const List& candidates, bool nearestToo
   const Vec3f middle = 0.5F * (low + high);
   const float around = 0.5F * (high - low).norm();
   std::vector<float> least;  // that a point of the block can be from each
+  least.reserve(candidates.size());
   float most = std::numeric_limits<float>::infinity();
   for (const std::uint32_t k : candidates) {
-    const Surface* const wall = walls_[k];
+    const IndexedWall& wall = walls_[k];
+    const float squared = wall.block != nullptr ? wall.block->squaredDistance(middle) : 0;
     if (!wall->steadyDistance()) {
       least.push_back(-std::numeric_limits<float>::infinity());
       continue;
     }
     Vec3f ignored;
-    const float distance = wall->distance(middle, ignored), change = slopeOf(*wall) * around;
+    const float distance = squared > 0 ? std::sqrt(squared) : wall->distance(middle, ignored);
+    const float change = slopeOf(*wall.surface) * around;
     least.push_back(distance - change);
     most = std::min(most, distance + change);
   }
@@ -111,21 +116,6 @@ void WallIndex::fill(const Block& block, const List& candidates, bool nearestToo
                 static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(size_.x()) +
                static_cast<std::size_t>(x)] = entry->second;
-}
-
-NearWalls WallIndex::near(const Vec3f& p, float reach) const {
-  if (cells_.empty()) return all();
-  const Vec3f at = inverseCell_ * (p - origin_);
-  if (!((at.array() >= 0).all() && (at.array() < size_.cast<float>().array()).all()))
-    return {walls_.data(), beyond_};
-  const Eigen::Vector3i cell = at.cast<int>();
-  const std::size_t row = static_cast<std::size_t>(cell.z()) * static_cast<std::size_t>(size_.y()) +
-                          static_cast<std::size_t>(cell.y());
-  const Range& range =
-      ranges_[cells_[row * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(cell.x())]];
-  std::size_t level = 0, begin = range.begin;
-  while (level + 1 < kLevels.size() && reach > kLevels[level] * reach_) begin += range.counts[level++];
-  return {walls_.data(), std::span(listed_).subspan(begin, range.counts[level])};
 }
 
 }  // namespace migiwa

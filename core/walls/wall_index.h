@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/walls/surface.h"
+#include "core/walls/upright.h"
 
 namespace migiwa {
 
@@ -18,10 +19,17 @@ namespace migiwa {
 /// those of splines and of SLIM surfaces overshoot a little about creases.
 inline constexpr float kExactSlope = 1.001F, kSteepestDistance = 1.5F;
 
-/// A wall, and the upright block that it is: null for other walls.
+/// A wall, and the upright block or vessel that it is: null for other walls.
 struct IndexedWall {
   const Surface* surface = nullptr;
   const UprightBlock* block = nullptr;
+  const UprightVessel* vessel = nullptr;
+
+  /// As Surface::project().
+  bool project(Vec3f& p, float margin) const {
+    if (block != nullptr) return block->project(p, margin);
+    return vessel != nullptr ? vessel->project(p, margin) : surface->project(p, margin);
+  }
 
   operator const Surface*() const { return surface; }
   const Surface* operator->() const { return surface; }
@@ -83,7 +91,20 @@ class WallIndex {
   /// In the order of all(), with some more than it must have.
   NearWalls near(const Vec3f& p) const { return near(p, reach_); }
   /// Those that come nearer than a reach (m) that is not above reach(): the same, or fewer.
-  NearWalls near(const Vec3f& p, float reach) const;
+  NearWalls near(const Vec3f& p, float reach) const {
+    if (cells_.empty()) return all();
+    const float x = inverseCell_ * (p.x() - origin_.x()), y = inverseCell_ * (p.y() - origin_.y()),
+                z = inverseCell_ * (p.z() - origin_.z());
+    if (!(x >= 0 && y >= 0 && z >= 0 && x < end_.x() && y < end_.y() && z < end_.z()))
+      return {walls_.data(), beyond_};
+    const std::size_t row =
+        static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) + static_cast<std::size_t>(y);
+    const Range& range =
+        ranges_[cells_[row * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(x)]];
+    std::size_t level = 0, begin = range.begin;
+    while (level + 1 < kLevels.size() && reach > kLevels[level] * reach_) begin += range.counts[level++];
+    return {walls_.data(), std::span(listed_).subspan(begin, range.counts[level])};
+  }
 
  private:
   /// Parts of the reach that a cell has lists for.
@@ -110,6 +131,7 @@ class WallIndex {
   Vec3f origin_ = Vec3f::Zero();
   float cell_ = 1, inverseCell_ = 1;
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  Vec3f end_ = Vec3f::Zero();         ///< size_
   std::vector<std::uint32_t> cells_;  ///< place in ranges_, x fastest; none: no grid
   std::vector<Range> ranges_;
   List listed_;  ///< the ranges' walls, one range's after another's

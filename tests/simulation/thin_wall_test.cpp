@@ -1,5 +1,10 @@
 // A plate thinner than the support radius: what is on one side knows nothing of the other.
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +105,71 @@ TEST(ThinWall, AMoveThatIsHeldBackGoesOnAlongTheWall) {
   EXPECT_FLOAT_EQ(held.y(), to.y());
   EXPECT_FLOAT_EQ(held.z(), to.z());
   EXPECT_EQ(clipMove(walls, from, false, Vec3f(0.3F, 0.2F, 0.1F), 0.025F), Vec3f(0.3F, 0.2F, 0.1F));
+}
+
+/// The least distance to a wall (m) on the way from one point to another, by walking there in small steps.
+float leastOnTheWay(const Boundary& walls, const Vec3f& from, const Vec3f& to) {
+  constexpr int kSteps = 400;
+  float least = std::numeric_limits<float>::infinity();
+  for (int k = 0; k <= kSteps; ++k)
+    least = std::min(least, walls.distance(from + static_cast<float>(k) / kSteps * (to - from)));
+  return least;
+}
+
+TEST(ThinWall, NeighboursAreThoseThatBlocksDoNotHide) {
+  // Against walking from each to each. Upright blocks enough for a grid, and one that is turned.
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<std::shared_ptr<const Surface>> surfaces;
+  for (int k = 0; k < 14; ++k) {
+    const Vec3d low(0.08 * (k % 5), 0.13 * (k / 5 % 3), 0.05 + 0.02 * (k % 3));
+    const Vec3d size(k % 2 == 0 ? 0.01 : 0.05, 0.04, k % 3 == 0 ? 0.15 : 0.02);
+    surfaces.push_back(std::make_shared<Box>(low, low + size, Box::Fluid::outside,
+                                             k == 7 ? Rotation{{1, 2, 0}, 40} : Rotation{}));
+  }
+  const Boundary boundary(surfaces);
+  ThreadPool pool(2);
+  StepState state(pool, boundary);
+  state.spacing = 0.05F, state.supportRadius = 0.1F, state.timeStep = 0.005F;
+  state.lattice = restingLattice(state.parameters.kernel, state.parameters.supportRatio);
+  for (std::uint32_t id = 0; id < 700; ++id) {
+    Vec3f p(0.45F * unit(random), 0.4F * unit(random), 0.25F * unit(random));
+    boundary.project(p, 0.001F);
+    state.particles.position.emplace_back(p);
+    state.particles.velocity.emplace_back();
+    state.particles.id.push_back(id);
+  }
+  const auto pairs = [&] {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (std::size_t i = 0; i < state.particles.size(); ++i)
+      for (const std::uint32_t j : state.neighbours.of(i))
+        found.emplace(state.particles.id[i], state.particles.id[j]);
+    return found;
+  };
+  prepareFields(state);
+  std::vector<Vec3f> place(state.particles.size());
+  for (std::size_t i = 0; i < place.size(); ++i)
+    place[state.particles.id[i]] = state.particles.position[i].xyz();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, float> least;
+  for (const auto& [i, j] : pairs())
+    if (i < j) least[{i, j}] = leastOnTheWay(boundary, place[i], place[j]);
+  state.thinWalls = thinWalls(boundary, state.supportRadius);
+  ASSERT_EQ(state.thinWalls.all().size(), surfaces.size());
+  // The second time it is known how far from walls particles are.
+  for (int round = 0; round < 2; ++round) {
+    prepareFields(state);
+    const auto kept = pairs();
+    int hidden = 0, seen = 0;
+    for (const auto& [pair, distance] : least) {
+      const auto& [i, j] = pair;
+      if (std::abs(distance) < 2e-4F) continue;  // along a face, or past an edge
+      ++(distance < 0 ? hidden : seen);
+      ASSERT_TRUE(kept.contains({i, j}) == (distance > 0) && kept.contains({j, i}) == (distance > 0))
+          << "round " << round << ", from " << place[i].transpose() << " to " << place[j].transpose();
+    }
+    EXPECT_GT(hidden, 500);
+    EXPECT_GT(seen, 1000);
+  }
 }
 
 TEST(ThinWall, FastWaterStaysInAThinBowlOfAnyShape) {

@@ -1,6 +1,9 @@
 // Several walls together.
 #include "core/walls/boundary.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -23,6 +26,40 @@ TEST(Boundary, DistanceIsThatOfTheNearestWall) {
   Vec3f normal;
   EXPECT_NEAR(boundary.distance({0.3F, 0.2F, 0}, normal), 0.2F, 1e-6);
   EXPECT_TRUE(normal.isApprox(Vec3f(0, 1, 0)));
+}
+
+TEST(Boundary, AnUprightVesselHoldsWhatIsAMarginAwayFromEachFace) {
+  const Vec3d low(-0.3, 0.1, 2), high(0.5, 0.7, 2.06);
+  const Boundary tank({std::make_shared<Box>(low, high, Box::Fluid::inside)});
+  const Boundary turned({std::make_shared<Box>(low, high, Box::Fluid::inside, Rotation{{0, 1, 0}, 20})});
+  const Boundary two({std::make_shared<Box>(low, high, Box::Fluid::inside),
+                      std::make_shared<Plane>(Vec3d::Zero(), Vec3d(0, 1, 0))});
+  EXPECT_EQ(turned.onlyVessel(), nullptr);
+  EXPECT_EQ(two.onlyVessel(), nullptr);
+  ASSERT_NE(tank.onlyVessel(), nullptr);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-0.1, 1.1);
+  int held = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3d at = low + Vec3d(unit(random), unit(random), unit(random)).cwiseProduct(high - low);
+    const Vec3f p = at.cast<float>();
+    const double room = std::min((at - low).minCoeff(), (high - at).minCoeff()),
+                 margin = k % 3 == 0 ? 0.01 : 0.02;
+    if (std::abs(room - margin) < 1e-6) continue;
+    held += room > margin ? 1 : 0;
+    ASSERT_EQ(tank.onlyVessel()->holds(p, static_cast<float>(margin)), room > margin) << at.transpose();
+    Vec3f moved = p;
+    ASSERT_EQ(tank.project(moved, static_cast<float>(margin)), room < margin) << at.transpose();
+    if (room > 0) {
+      ASSERT_NEAR(tank.onlyVessel()->distance(p), room, 1e-6);
+    }
+  }
+  EXPECT_GT(held, 100);
+  // Where there is no room, midway alone.
+  EXPECT_TRUE(tank.onlyVessel()->holds({0, 0.4F, 2.03F}, 0.031F));
+  EXPECT_FALSE(tank.onlyVessel()->holds({0, 0.4F, 2.04F}, 0.031F));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(tank.onlyVessel()->holds({0, nan, 2.03F}, 0.01F));
 }
 
 TEST(Boundary, ProjectionSatisfiesAllWallsOfAWedgeAndATankWithABlock) {
