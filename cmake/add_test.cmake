@@ -43,6 +43,10 @@ function(migiwa_add_test name)
   target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   migiwa_target_options(${name})
   migiwa_reuse_test_headers(${name})
+  # Half of what a test file takes is what it has in common with others. Each has a namespace of its own, named after it.
+  if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
+  endif()
 
   # Grids of gamma and fits of meshes are kept for one run of ctest: the first test that asks makes them, and none is left
   # from an earlier run, which would be no test of this one.

@@ -1,9 +1,9 @@
-# In builds of the type Release the files of a room are compiled as one, which saves a third of the program's build: what
+# The files of a room are compiled as one, which saves a third of the program's build: what
 # they have in common, above all the JSON library and Eigen, is read and instantiated once. Files that have options of
-# their own stay apart: those of the hot rooms, so that a change of the step compiles that file alone. Debug and sanitizer
-# builds compile every file by itself, which shows what each must include.
+# their own stay apart: those of the hot rooms, so that a change of the step compiles that file alone. Builds of the type Debug
+# compile every file by itself, which shows what each must include.
 function(migiwa_join_rooms target)
-  if(NOT CMAKE_BUILD_TYPE STREQUAL Release)
+  if(CMAKE_BUILD_TYPE STREQUAL Debug)
     return()
   endif()
   # GCC takes every file that another includes for a header, in which classes with members from an unnamed namespace would

@@ -3,7 +3,7 @@
 #include "core/base/math.h"
 
 namespace migiwa {
-namespace {
+namespace bounds_test {
 
 TEST(Bounds, AreEmptyUntilSomethingIsIncluded) {
   Bounds bounds;
@@ -53,5 +53,5 @@ TEST(Bounds, GrownMovesEveryFaceOutwards) {
   EXPECT_TRUE(Bounds{}.grown(1).empty());
 }
 
-}  // namespace
+}  // namespace bounds_test
 }  // namespace migiwa

@@ -6,7 +6,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace error_test {
 
 TEST(InputError, CarriesEveryFaultAndSaysThemAll) {
   const std::vector<Fault> faults{{"a.json:/gravity", "expected 3 numbers, found 2"},
@@ -24,5 +24,5 @@ TEST(InputError, OneFaultNeedsNoList) {
   EXPECT_EQ(std::string(error.what()), "--until: expected a number");
 }
 
-}  // namespace
+}  // namespace error_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {
-namespace {
+namespace file_identity_test {
 
 namespace fs = std::filesystem;
 
@@ -87,5 +87,5 @@ TEST_F(FileIdentityTest, AChangeWhileAFileIsReadIsAFault) {
   }
 }
 
-}  // namespace
+}  // namespace file_identity_test
 }  // namespace migiwa

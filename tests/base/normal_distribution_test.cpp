@@ -8,7 +8,7 @@
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {
-namespace {
+namespace normal_distribution_test {
 
 double density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
@@ -44,5 +44,5 @@ TEST(NormalDistribution, TwoVariablesTogether) {
   }
 }
 
-}  // namespace
+}  // namespace normal_distribution_test
 }  // namespace migiwa

@@ -14,9 +14,9 @@
 #include <gtest/gtest.h>
 
 namespace migiwa {
-namespace {
+namespace parallel_test {
 
-class Parallel : public testing::TestWithParam<int> {
+class Parallel : public ::testing::TestWithParam<int> {
  protected:
   ThreadPool pool{GetParam()};
 };
@@ -144,8 +144,8 @@ TEST_P(Parallel, ManyShortRunsInARow) {
   EXPECT_EQ(total, 3000u / 9 * 36 + 0 + 1 + 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 3, 8, 64),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Threads, Parallel, ::testing::Values(1, 2, 3, 8, 64),
+                         ::testing::PrintToStringParamName());
 
 TEST(ThreadPool, ZeroTakesWhatTheMachineHas) {
   const ThreadPool pool(0);
@@ -173,5 +173,5 @@ TEST(ThreadPool, SeveralThreadsWorkAtTheSameTime) {
   });
 }
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace migiwa

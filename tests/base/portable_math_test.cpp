@@ -8,7 +8,7 @@
 #include "core/base/math.h"
 
 namespace migiwa {
-namespace {
+namespace portable_math_test {
 
 /// From -1 to 1, without a pattern: multiples of the golden ratio.
 double spread(int k) {
@@ -84,5 +84,5 @@ TEST(PortableMath, Roots) {
   EXPECT_EQ(portable::hypot(2, 3, 6), 7);
 }
 
-}  // namespace
+}  // namespace portable_math_test
 }  // namespace migiwa

@@ -11,7 +11,7 @@
 #include "core/base/parallel.h"
 
 namespace migiwa {
-namespace {
+namespace progress_test {
 
 class Listener final : public ProgressObserver {
  public:
@@ -101,5 +101,5 @@ TEST(Progress, NobodyElseIsTold) {
   EXPECT_TRUE(listener.told.empty());
 }
 
-}  // namespace
+}  // namespace progress_test
 }  // namespace migiwa

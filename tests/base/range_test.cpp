@@ -5,7 +5,7 @@
 #include "core/base/fields.h"
 
 namespace migiwa {
-namespace {
+namespace range_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -46,5 +46,5 @@ TEST(Range, CoordinatesReachTheLimitOnBothSides) {
   EXPECT_FALSE(kCoordinateRange.contains(std::nextafter(kLargestCoordinate, kInfinity)));
 }
 
-}  // namespace
+}  // namespace range_test
 }  // namespace migiwa

@@ -3,7 +3,7 @@
 #include "core/base/fields.h"
 
 namespace migiwa {
-namespace {
+namespace rotation_test {
 
 TEST(Rotation, TurnsRightHanded) {
   // A quarter turn takes each axis to the next but one's negative, by the definition of right-handed.
@@ -23,5 +23,5 @@ TEST(Rotation, NoAngleIsExactlyTheIdentity) {
   EXPECT_EQ((Rotation{Vec3d(1, 2, 3), 0}.matrix()), Eigen::Matrix3d::Identity());
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace migiwa

@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 
 namespace migiwa {
-namespace {
+namespace stage_times_test {
 
 std::vector<std::string> names(const StageTimes& times) {
   std::vector<std::string> result;
@@ -61,5 +61,5 @@ TEST(StageTimes, TimeBooksAtLeastAsLongAsTheBodyTook) {
   EXPECT_LT(times.seconds("sleep"), 10);
 }
 
-}  // namespace
+}  // namespace stage_times_test
 }  // namespace migiwa

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace absent_effects_test {
 
 /// What a probe prints of a scene of the given effects after 0.2 s.
 std::string probe(const char* program, const std::string& scene, const std::string& effects) {
   namespace fs = std::filesystem;
-  const fs::path file = fs::path(testing::TempDir()) / ("absent_effects_" + scene + ".json");
+  const fs::path file = fs::path(::testing::TempDir()) / ("absent_effects_" + scene + ".json");
   {
     const std::string text = R"({"format": 1, "include": ")" MIGIWA_SOURCE_DIR "/scenes/" + scene +
                              R"(.json", "effects": )" + effects + "}";
@@ -41,4 +41,4 @@ TEST(AbsentEffects, AreAbsent) {
   }
 }
 
-}  // namespace
+}  // namespace absent_effects_test

@@ -6,7 +6,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace all_effects_test {
 
 using namespace migiwa::testing;
 
@@ -70,5 +70,5 @@ TEST(AllEffects, TheirParametersChangeBetweenTwoSteps) {
   EXPECT_NE(other.stateHash(), simulation.stateHash()) << "it acted in the second frame only";
 }
 
-}  // namespace
+}  // namespace all_effects_test
 }  // namespace migiwa

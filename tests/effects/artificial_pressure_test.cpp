@@ -11,7 +11,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace artificial_pressure_test {
 
 using namespace migiwa::testing;
 
@@ -78,5 +78,5 @@ TEST(ArtificialPressure, APairAtDeltaQPartsAsFarAsEquation13Says) {
   EXPECT_NEAR(apart - gap, 2 * move, 1e-3 * move + 1e-6);
 }
 
-}  // namespace
+}  // namespace artificial_pressure_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/support/moments.h"
 
 namespace migiwa {
-namespace {
+namespace droplet_scene_test {
 
 struct SessileDrop {
   double volume = 0;  ///< (m^3)
@@ -69,5 +69,5 @@ TEST(DropletScene, SlidesOnWithoutFriction) {
   EXPECT_NEAR(moments.momentum.x() / static_cast<double>(simulation.view().positions.size()), 0.15, 0.003);
 }
 
-}  // namespace
+}  // namespace droplet_scene_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace surface_tension_test {
 
 using namespace migiwa::testing;
 
@@ -153,5 +153,5 @@ TEST(SurfaceTension, WithoutItACubeStaysOne) {
   EXPECT_NEAR(cubicity(simulation.view()), -0.126, 0.01);
 }
 
-}  // namespace
+}  // namespace surface_tension_test
 }  // namespace migiwa

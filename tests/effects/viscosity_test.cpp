@@ -10,7 +10,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace viscosity_test {
 
 using namespace migiwa::testing;
 
@@ -184,5 +184,5 @@ TEST(KinematicViscosity, AFlowingShearWaveDecaysInAWholeRun) {
   EXPECT_NEAR(rate / (kViscosity * wave * wave), 0.95, 0.05);
 }
 
-}  // namespace
+}  // namespace viscosity_test
 }  // namespace migiwa

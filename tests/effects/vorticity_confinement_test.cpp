@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace vorticity_confinement_test {
 
 using namespace migiwa::testing;
 
@@ -103,5 +103,5 @@ TEST(VorticityConfinement, AVortexLastsLonger) {
   EXPECT_LT((spinWith - spinWithout).norm(), 0.01 * spinWithout.norm());
 }
 
-}  // namespace
+}  // namespace vorticity_confinement_test
 }  // namespace migiwa

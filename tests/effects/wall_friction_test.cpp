@@ -10,7 +10,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace wall_friction_test {
 
 using namespace migiwa::testing;
 
@@ -143,5 +143,5 @@ TEST(WallFriction, WithoutItALayerSlidesForEver) {
   EXPECT_NEAR(meanVelocity(simulation), 1, 1e-4);
 }
 
-}  // namespace
+}  // namespace wall_friction_test
 }  // namespace migiwa

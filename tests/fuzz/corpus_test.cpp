@@ -12,7 +12,7 @@
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace migiwa::fuzz {
-namespace {
+namespace corpus_test {
 
 std::vector<std::filesystem::path> inputsOf(std::string_view target) {
   std::vector<std::filesystem::path> files;
@@ -49,5 +49,5 @@ TEST_P(OnlyDoesNotCrash, OnTheCorpusItsPiecesAndChangedBytes) {
 INSTANTIATE_TEST_SUITE_P(Corpus, OnlyDoesNotCrash, ::testing::ValuesIn(targets().begin(), targets().end()),
                          [](const auto& one) { return std::string(one.param.name); });
 
-}  // namespace
+}  // namespace corpus_test
 }  // namespace migiwa::fuzz

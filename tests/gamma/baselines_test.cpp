@@ -13,7 +13,7 @@
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {
-namespace {
+namespace baselines_test {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
@@ -307,5 +307,5 @@ TEST(Baselines, FollowAWallThatMoves) {
   }
 }
 
-}  // namespace
+}  // namespace baselines_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/gamma/gamma_reference.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_accuracy_test {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
@@ -264,7 +264,7 @@ TEST(GammaAccuracy, SpheresInsideAndOutside) {
   }
 }
 
-class PolynomialAccuracy : public testing::TestWithParam<KernelType> {};
+class PolynomialAccuracy : public ::testing::TestWithParam<KernelType> {};
 
 TEST_P(PolynomialAccuracy, OfDegreeTwoAndThree) {
   // z = sum c x^i y^j, in support radii; curvature radii of 2 to 4 h.
@@ -332,8 +332,8 @@ TEST_P(PolynomialAccuracy, OfDegreeTwoAndThree) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, PolynomialAccuracy,
-                         testing::Values(KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
-                                         KernelType::wendlandC2));
+                         ::testing::Values(KernelType::poly6, KernelType::spiky, KernelType::cubicSpline,
+                                           KernelType::wendlandC2));
 
 TEST(GammaAccuracy, MonteCarloConvergesOnASphere) {
   Case walls{"sphere 3h",
@@ -369,5 +369,5 @@ TEST(GammaReference, AgreesWithItselfAndWithClosedForms) {
               reference::insideSphere(kernel, offset, radius), 1e-6);
 }
 
-}  // namespace
+}  // namespace gamma_accuracy_test
 }  // namespace migiwa

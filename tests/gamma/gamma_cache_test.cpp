@@ -13,16 +13,16 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_cache_test {
 
 namespace fs = std::filesystem;
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
 /// A cache of its own for every test.
-class GammaCache : public testing::Test {
+class GammaCache : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::temp_directory_path() / ("migiwa_" + std::string(test->name()) + std::to_string(getpid()));
     fs::remove_all(folder_);
     if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
@@ -154,5 +154,5 @@ TEST_F(GammaCache, AGridBeyondMemoryIsRefusedBeforeItIsMade) {
   }
 }
 
-}  // namespace
+}  // namespace gamma_cache_test
 }  // namespace migiwa

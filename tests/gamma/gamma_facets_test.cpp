@@ -15,7 +15,7 @@
 #include "tests/gamma/gamma_reference.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_facets_test {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
@@ -416,5 +416,5 @@ TEST(GammaFacets, MeshesThatAreThickAreWhatTheyEnclose) {
              false, 1.2);
 }
 
-}  // namespace
+}  // namespace gamma_facets_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_methods_test {
 
 constexpr float kSupport = 0.1F;
 
@@ -263,5 +263,5 @@ TEST(Gamma, ASharePastItsRangeIsCounted) {
   }
 }
 
-}  // namespace
+}  // namespace gamma_methods_test
 }  // namespace migiwa

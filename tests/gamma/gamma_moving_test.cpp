@@ -8,7 +8,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_moving_test {
 
 constexpr float kSupport = 0.1F;
 
@@ -137,5 +137,5 @@ TEST(GammaOfMovingWalls, ABallAsksItsGridInItsOwnFrame) {
   EXPECT_LT(found.gradient, 0.05F);
 }
 
-}  // namespace
+}  // namespace gamma_moving_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/gamma/gamma_reference.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_properties_test {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
@@ -221,5 +221,5 @@ TEST(GammaProperties, EveryInstructionSetAgrees) {
   }
 }
 
-}  // namespace
+}  // namespace gamma_properties_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/gamma/gamma_reference.h"
 
 namespace migiwa {
-namespace {
+namespace gamma_thin_wall_test {
 
 using Surfaces = std::vector<std::shared_ptr<const Surface>>;
 
@@ -113,5 +113,5 @@ TEST(GammaThinWall, ASmallBallHidesWhatIsBehindIt) {
   }
 }
 
-}  // namespace
+}  // namespace gamma_thin_wall_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/hard_cases/energy_watch.h"
 
 namespace migiwa::testing {
-namespace {
+namespace energy_regained_test {
 
 bool notes(const Simulation& simulation, const std::string& kind) {
   for (const Trouble& trouble : simulation.statistics().trouble)
@@ -74,5 +74,5 @@ TEST(EnergyRegained, WaterOnAnOpenSheetIsNotThrownUpAgain) {
   EXPECT_LE(energy.mostRegained(), 0.13);
 }
 
-}  // namespace
+}  // namespace energy_regained_test
 }  // namespace migiwa::testing

@@ -14,7 +14,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace fault_test {
 
 /// Keeps a state in memory: written by a simulation, changed by a test, and read back by it.
 class Memory final : public StateVisitor {
@@ -167,5 +167,5 @@ INSTANTIATE_TEST_SUITE_P(Each, SpoiledStages,
                          ::testing::Values(Spoiler::Where::prediction, Spoiler::Where::iteration,
                                            Spoiler::Where::velocity));
 
-}  // namespace
+}  // namespace fault_test
 }  // namespace migiwa::testing

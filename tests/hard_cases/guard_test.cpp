@@ -6,7 +6,7 @@
 #include "tests/hard_cases/without_guards.h"
 
 namespace migiwa::testing {
-namespace {
+namespace guard_test {
 
 class NormalScenes : public ::testing::TestWithParam<NormalScene> {};
 
@@ -34,5 +34,5 @@ TEST(Guards, AreMissedByHardCases) {
   }
 }
 
-}  // namespace
+}  // namespace guard_test
 }  // namespace migiwa::testing

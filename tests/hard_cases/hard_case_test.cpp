@@ -11,7 +11,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace hard_case_test {
 
 std::string testName(const HardCase& hardCase) {
   std::string name = hardCase.name;
@@ -116,5 +116,5 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Soak, ::testing::ValuesIn(soakCases()),
                          [](const auto& one) { return testName(one.param); });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Soak);
 
-}  // namespace
+}  // namespace hard_case_test
 }  // namespace migiwa::testing

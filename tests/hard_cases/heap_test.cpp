@@ -7,7 +7,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace heap_test {
 
 class PointSource final : public FluidSource {
  public:
@@ -137,5 +137,5 @@ TEST(Heaps, ThatWallsMakeInARunAreSpreadWithinThem) {
   }
 }
 
-}  // namespace
+}  // namespace heap_test
 }  // namespace migiwa::testing

@@ -9,7 +9,7 @@
 #include "core/walls/boundary.h"
 
 namespace migiwa::testing {
-namespace {
+namespace hold_energy_test {
 
 constexpr float kSpacing = 0.0625F, kStep = 0.001953125F;
 constexpr int kEdge = 5;
@@ -142,5 +142,5 @@ TEST(HoldEnergy, LeavesAStepThatTheSolveDidNotChange) {
   EXPECT_EQ(blocks.velocities(), before);
 }
 
-}  // namespace
+}  // namespace hold_energy_test
 }  // namespace migiwa::testing

@@ -7,7 +7,7 @@
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {
-namespace {
+namespace plate_test {
 
 /// Of the fluid on one side.
 struct Side {
@@ -83,5 +83,5 @@ INSTANTIATE_TEST_SUITE_P(Thicknesses, Plates, ::testing::Values("plate_1", "plat
                                                                               : "OfATwentieth");
                          });
 
-}  // namespace
+}  // namespace plate_test
 }  // namespace migiwa::testing

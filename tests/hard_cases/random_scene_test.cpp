@@ -9,7 +9,7 @@
 #include "tests/hard_cases/hard_case.h"
 
 namespace migiwa::testing {
-namespace {
+namespace random_scene_test {
 
 /// Draws scene files. Only the engine's bits are used, for distributions differ between libraries.
 class RandomScene {
@@ -115,5 +115,5 @@ TEST_P(RandomScenes, KeepEveryInvariant) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(1U, 1U + sceneCount()));
 
-}  // namespace
+}  // namespace random_scene_test
 }  // namespace migiwa::testing

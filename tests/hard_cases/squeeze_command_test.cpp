@@ -7,7 +7,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace squeeze_command_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -82,5 +82,5 @@ TEST_F(SqueezeCommand, ExportsTheLastGoodFrameAndSaysTroubleOnce) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "frames" / list["files"].back()["file"].get<std::string>()));
 }
 
-}  // namespace
+}  // namespace squeeze_command_test
 }  // namespace migiwa::testing

@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace symmetry_test {
 
 constexpr double kUntil = 0.25;  // before the front meets the far wall: nothing is chaotic yet
 const Vec3d kTank{0.9, 0.8, 0.3}, kColumn{0.3, 0.4, 0.3};
@@ -92,5 +92,5 @@ TEST(Symmetry, AMirroredTankGoesTheMirroredWay) {
   expectSame(courseOf(mirrored, mirror, 0.5 * kTank), reference);
 }
 
-}  // namespace
+}  // namespace symmetry_test
 }  // namespace migiwa::testing

@@ -12,7 +12,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace wall_jump_test {
 
 constexpr float kSpacing = 0.125F, kStep = 0.0078125F;
 
@@ -72,5 +72,5 @@ TEST(WallJump, OfARefusedStepIsTakenBack) {
   EXPECT_TRUE(step.state().suppressedPushes.empty());
 }
 
-}  // namespace
+}  // namespace wall_jump_test
 }  // namespace migiwa::testing

@@ -15,7 +15,7 @@
 #include "tests/io/particle_files.h"
 
 namespace migiwa::testing {
-namespace {
+namespace disk_command_test {
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
@@ -225,5 +225,5 @@ TEST_F(DiskCommand, AKilledWriterLeavesTheOldFileOrTheNew) {
   }
 }
 
-}  // namespace
+}  // namespace disk_command_test
 }  // namespace migiwa::testing

@@ -11,7 +11,7 @@
 #include "tests/io/drop_test.h"
 
 namespace migiwa::testing {
-namespace {
+namespace exit_code_test {
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
@@ -212,5 +212,5 @@ TEST_F(ExitCode, HoweverLittleMemoryThereIs) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-}  // namespace
+}  // namespace exit_code_test
 }  // namespace migiwa::testing

@@ -12,7 +12,7 @@
 #include "tests/io/particle_files.h"
 
 namespace migiwa::testing {
-namespace {
+namespace export_command_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -120,5 +120,5 @@ TEST_F(ExportCommand, WrongWishesAreRefusedAllAtOnce) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
-}  // namespace
+}  // namespace export_command_test
 }  // namespace migiwa::testing

@@ -11,7 +11,7 @@
 #include "tests/io/drop_test.h"
 
 namespace migiwa::testing {
-namespace {
+namespace gnuplot_command_test {
 
 namespace fs = std::filesystem;
 
@@ -136,5 +136,5 @@ TEST_F(SectionCommandPicture, SaysWhereThereIsNoLiquid) {
   EXPECT_NE(script({"drop.json", "--plane", "x=0.75"}).find("no liquid on this plane"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace gnuplot_command_test
 }  // namespace migiwa::testing

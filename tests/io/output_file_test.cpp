@@ -8,15 +8,16 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace output_file_test {
 
 namespace fs = std::filesystem;
 
-class OutputFile : public testing::Test {
+class OutputFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("migiwa_output_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        fs::path(::testing::TempDir()) /
+        (std::string("migiwa_output_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -80,5 +81,5 @@ TEST_F(OutputFile, DevicesAreWrittenStraightAway) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-}  // namespace
+}  // namespace output_file_test
 }  // namespace migiwa

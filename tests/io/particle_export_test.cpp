@@ -20,7 +20,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace particle_export_test {
 
 using namespace migiwa::testing;
 namespace fs = std::filesystem;
@@ -314,5 +314,5 @@ TEST(ExportSchedule, PicksTheNearestFrames) {
   }
 }
 
-}  // namespace
+}  // namespace particle_export_test
 }  // namespace migiwa

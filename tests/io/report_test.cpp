@@ -12,13 +12,13 @@
 #include "core/simulation/measures.h"
 
 namespace migiwa {
-namespace {
+namespace report_test {
 
-class ReportFile : public testing::Test {
+class ReportFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    file_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("migiwa_report_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+    file_ = std::filesystem::path(::testing::TempDir()) /
+            (std::string("migiwa_report_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
              ".json");
   }
   void TearDown() override { std::filesystem::remove(file_); }
@@ -234,5 +234,5 @@ TEST_F(ReportFile, NoStepsAndNoParticlesAreNoDivisionsByZero) {
   EXPECT_EQ(reportText(report).find("nan"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace migiwa

@@ -17,7 +17,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace save_command_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -132,5 +132,5 @@ TEST_F(SaveCommand, WhatCannotBeWrittenOrReadIsRefusedBeforeTheRun) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
-}  // namespace
+}  // namespace save_command_test
 }  // namespace migiwa::testing

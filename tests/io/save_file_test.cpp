@@ -21,7 +21,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace save_file_test {
 
 using namespace migiwa::testing;
 namespace fs = std::filesystem;
@@ -443,5 +443,5 @@ TEST_F(SaveFile, ARunThatFailedIsNotSaved) {
   EXPECT_FALSE(fs::exists(file_));
 }
 
-}  // namespace
+}  // namespace save_file_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include <migiwa/version.h>
 
 namespace migiwa {
-namespace {
+namespace detach_test {
 
 Scene tank() {
   return parseScene(R"({ "format": 1, "particle_spacing": 0.1,
@@ -61,5 +61,5 @@ TEST(Version, IsThatOfItsParts) {
                                              std::to_string(MIGIWA_VERSION_PATCH));
 }
 
-}  // namespace
+}  // namespace detach_test
 }  // namespace migiwa

@@ -13,7 +13,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace registry_test {
 
 /// A ball that knows its distance only.
 class Ball final : public Described<Ball, DistanceSurface> {
@@ -183,5 +183,5 @@ TEST(OutsideTheLibrary, NamesStayWhereTheyAre) {
   EXPECT_THROW(registry.add("one_too_many", [] { return std::make_unique<Push>(); }), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace registry_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace bodies_test {
 
 Vec3f anyPoint(RandomSequence& random, double size) {
   const auto one = [&] { return static_cast<float>(size * (2 * random.unit() - 1)); };
@@ -152,5 +152,5 @@ TEST(TriangleRays, WithoutEmbreeTheySayWhatToInstall) {
   EXPECT_THROW(TriangleRays(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), MissingError);
 }
 
-}  // namespace
+}  // namespace bodies_test
 }  // namespace migiwa

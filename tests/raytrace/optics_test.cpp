@@ -12,7 +12,7 @@
 #include "tests/raytrace/stages.h"
 
 namespace migiwa {
-namespace {
+namespace optics_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -127,5 +127,5 @@ TEST(PixelSamples, PixelsAndDimensionsAreIndependent) {
   EXPECT_NEAR(between, 0, 4 / std::sqrt(kCount));
 }
 
-}  // namespace
+}  // namespace optics_test
 }  // namespace migiwa

@@ -15,7 +15,7 @@
 #include "tests/raytrace/stages.h"
 
 namespace migiwa {
-namespace {
+namespace paths_test {
 
 using WavyTank = testing::WavyTank;
 
@@ -209,5 +209,5 @@ TEST(Paths, NoneLeaksAtAWallThatIsDrawnByTriangles) {
   EXPECT_EQ(counts.leaked, 0U) << counts.contradictions << " contradictions in " << counts.stretches;
 }
 
-}  // namespace
+}  // namespace paths_test
 }  // namespace migiwa

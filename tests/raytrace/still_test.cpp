@@ -9,7 +9,7 @@
 #include "tests/raytrace/stages.h"
 
 namespace migiwa {
-namespace {
+namespace still_test {
 
 Exposure smallPicture(const Stage& stage, const Camera& camera, int samples, int threads,
                       std::uint32_t seed = 0) {
@@ -152,5 +152,5 @@ TEST(Developed, BlackIsBlackAndBrighterIsNotDarker) {
   }
 }
 
-}  // namespace
+}  // namespace still_test
 }  // namespace migiwa

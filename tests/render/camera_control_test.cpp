@@ -6,7 +6,7 @@
 #include "app/render/projection.h"
 
 namespace migiwa {
-namespace {
+namespace camera_control_test {
 
 Camera camera() {
   return {Vec3d(0, 0, 5), Vec3d(0, 0, 0), Vec3d(0, 1, 0), 40};
@@ -49,5 +49,5 @@ TEST(CameraControlTest, ZoomStopsBeforeTheTarget) {
   EXPECT_GT((c.eye - c.target).norm(), 0);
 }
 
-}  // namespace
+}  // namespace camera_control_test
 }  // namespace migiwa

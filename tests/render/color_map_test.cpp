@@ -8,7 +8,7 @@
 #include "app/render/image.h"
 
 namespace migiwa {
-namespace {
+namespace color_map_test {
 
 struct Oklab {
   double lightness, a, b;
@@ -77,5 +77,5 @@ TEST(ColorMapTest, WarmMapIsAsEvenAndNeverBlueOrGreen) {
   }
 }
 
-}  // namespace
+}  // namespace color_map_test
 }  // namespace migiwa

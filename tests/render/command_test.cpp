@@ -15,7 +15,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace command_test {
 
 namespace fs = std::filesystem;
 
@@ -26,7 +26,7 @@ std::string contents(const fs::path& file) {
   return text.str();
 }
 
-class RenderCommand : public testing::Test {
+class RenderCommand : public ::testing::Test {
  protected:
   RenderCommand() {
     std::ofstream(scene_) << R"({
@@ -42,11 +42,11 @@ class RenderCommand : public testing::Test {
     std::vector<std::string> arguments{"render",  scene_.string(), "--out",  out.string(),
                                        "--quiet", "--size",        "320x200"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
     const int code = runCommandLine(arguments);
-    out_ = testing::internal::GetCapturedStdout();
-    errors_ = testing::internal::GetCapturedStderr();
+    out_ = ::testing::internal::GetCapturedStdout();
+    errors_ = ::testing::internal::GetCapturedStderr();
     return code;
   }
 
@@ -129,5 +129,5 @@ TEST(WindowTest, WithoutADisplaySaysWhatToInstall) {
   }
 }
 
-}  // namespace
+}  // namespace command_test
 }  // namespace migiwa

@@ -12,7 +12,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa {
-namespace {
+namespace film_command_test {
 
 namespace fs = std::filesystem;
 
@@ -207,5 +207,5 @@ TEST_F(FilmCommand, NamesEveryFault) {
   EXPECT_NE(outcome.err.find("--fps: expected --film beside it"), std::string::npos) << outcome.err;
 }
 
-}  // namespace
+}  // namespace film_command_test
 }  // namespace migiwa

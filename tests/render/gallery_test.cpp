@@ -15,7 +15,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace gallery_test {
 
 namespace fs = std::filesystem;
 
@@ -137,5 +137,5 @@ TEST_F(Gallery, ShowsCardsAndOpensTheOneThatIsClicked) {
     EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
 }
 
-}  // namespace
+}  // namespace gallery_test
 }  // namespace migiwa

@@ -18,7 +18,7 @@
 #include "tests/render/image_compare.h"
 
 namespace migiwa {
-namespace {
+namespace golden_test {
 
 namespace fs = std::filesystem;
 
@@ -62,7 +62,7 @@ void compare(const Image& found, const std::string& name) {
                 << 100 * kAllowedShare << "%; see " << (folder / (name + "_difference.png"));
 }
 
-class GoldenTest : public testing::TestWithParam<fs::path> {};
+class GoldenTest : public ::testing::TestWithParam<fs::path> {};
 
 TEST_P(GoldenTest, LooksAsItDidAtTheStart) {
   const auto context = makeEglContext();
@@ -80,10 +80,10 @@ TEST_P(GoldenTest, LooksAsItDidWhenItHadMoved) {
   compare(picture(simulation, simulation.scene(), false), simulation.scene().stem() + "_t0.500");
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GoldenTest, testing::ValuesIn(sceneFiles()),
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenTest, ::testing::ValuesIn(sceneFiles()),
                          [](const auto& scene) { return scene.param.stem().string(); });
 
-class GoldenComparison : public testing::Test {
+class GoldenComparison : public ::testing::Test {
  protected:
   std::unique_ptr<GlContext> context_ = makeEglContext();
   Simulation simulation_{readScene(fs::path(MIGIWA_SOURCE_DIR) / "scenes" / "dam_break.json")};
@@ -112,5 +112,5 @@ TEST_F(GoldenComparison, RefusesAnotherSize) {
   EXPECT_EQ(differentShare(reference_, Image(kWidth, kHeight + 1)), 1);
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace migiwa

@@ -5,7 +5,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace held_simulation_test {
 
 namespace fs = std::filesystem;
 
@@ -205,5 +205,5 @@ TEST_F(WhatIfBesideARun, MeasuresWhileSettingsChange) {
   EXPECT_TRUE(movesOn(true));
 }
 
-}  // namespace
+}  // namespace held_simulation_test
 }  // namespace migiwa

@@ -22,7 +22,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace inspect_test {
 
 constexpr int kWidth = 900, kHeight = 700;
 
@@ -295,5 +295,5 @@ TEST(SupportBall, WithoutWallsNothingIsMissing) {
   EXPECT_FALSE(probe.makeNext());
 }
 
-}  // namespace
+}  // namespace inspect_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace legend_test {
 
 TEST(LegendTest, ShowsTheWholeMapFromLowToHigh) {
   const auto context = makeEglContext();
@@ -62,5 +62,5 @@ TEST(LegendTest, ASceneMayFixTheRange) {
   EXPECT_NE(viewer.colorRange(ColorField::gamma), (std::array<double, 2>{0.9, 1.1}));
 }
 
-}  // namespace
+}  // namespace legend_test
 }  // namespace migiwa

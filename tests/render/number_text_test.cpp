@@ -5,7 +5,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace number_text_test {
 
 TEST(NumberTextTest, GroupsDigitsByThree) {
   EXPECT_EQ(groupedDigits(0), "0");
@@ -39,5 +39,5 @@ TEST(NumberTextTest, TicksAreRoundNumbersInTheRange) {
   EXPECT_EQ(lambda.decimals, 3);
 }
 
-}  // namespace
+}  // namespace number_text_test
 }  // namespace migiwa

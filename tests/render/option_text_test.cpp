@@ -4,7 +4,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace option_text_test {
 
 /// What the single fault says, and where.
 template <class Body>
@@ -52,5 +52,5 @@ TEST(OptionTextTest, VariantsPartAtCommasOutsideBrackets) {
   EXPECT_TRUE(faultOf([] { parseVariants("handling", "--compare"); }).starts_with("--compare: "));
 }
 
-}  // namespace
+}  // namespace option_text_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
-namespace {
+namespace panels_test {
 
 constexpr int kWidth = 1280, kHeight = 720;
 
@@ -170,5 +170,5 @@ TEST_F(PanelsTest, PanelsAreHiddenByTheirKey) {
   EXPECT_GT(without.pixel(310, 700)[0], 150) << "the scene";
 }
 
-}  // namespace
+}  // namespace panels_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include "core/base/files.h"
 
 namespace migiwa {
-namespace {
+namespace png_test {
 
 TEST(Png, ADecoderReadsWhatWasWritten) {
   Image image(61, 37);
@@ -24,5 +24,5 @@ TEST(Png, ADecoderReadsWhatWasWritten) {
   std::filesystem::remove(file);
 }
 
-}  // namespace
+}  // namespace png_test
 }  // namespace migiwa

@@ -15,7 +15,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace random_input_test {
 
 constexpr int kWidth = 420, kHeight = 900, kFrames = 120;
 
@@ -136,5 +136,5 @@ TEST_F(ShownText, HoldsWhatPanelsSay) {
   EXPECT_TRUE(showsNonFinite(text));
 }
 
-}  // namespace
+}  // namespace random_input_test
 }  // namespace migiwa

@@ -11,12 +11,12 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace scene_editor_test {
 
 constexpr int kWidth = 1280, kHeight = 720;
 namespace fs = std::filesystem;
 
-class SceneEditorTest : public testing::Test {
+class SceneEditorTest : public ::testing::Test {
  protected:
   ~SceneEditorTest() override { fs::remove_all(folder_); }
 
@@ -338,5 +338,5 @@ TEST_F(SceneEditorTest, AFileThatBreaksLeavesAnEditedTextAlone) {
   EXPECT_EQ(editor_.note, "small.json has changed: 1 fault, the scene before it goes on");
 }
 
-}  // namespace
+}  // namespace scene_editor_test
 }  // namespace migiwa

@@ -13,7 +13,7 @@
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {
-namespace {
+namespace scene_session_test {
 
 namespace fs = std::filesystem;
 
@@ -424,5 +424,5 @@ TEST_F(SceneSessionTest, WhoAsksReadsNoFile) {
   EXPECT_LT(*bytesReadHere() - before, 4096) << "the counter itself";
 }
 
-}  // namespace
+}  // namespace scene_session_test
 }  // namespace migiwa

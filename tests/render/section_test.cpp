@@ -22,7 +22,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace section_test {
 
 constexpr int kWidth = 720, kHeight = 1000;
 
@@ -273,5 +273,5 @@ TEST(SectionCommand, RefusesWhatItCannotDoAndSaysHow) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace section_test
 }  // namespace migiwa

@@ -9,9 +9,9 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace shader_source_test {
 
-class ShaderSourceTest : public testing::Test {
+class ShaderSourceTest : public ::testing::Test {
  protected:
   ~ShaderSourceTest() override {
     unsetenv("MIGIWA_SHADERS");
@@ -36,5 +36,5 @@ TEST_F(ShaderSourceTest, AFolderTakesTheirPlace) {
   EXPECT_THROW(shaderSource("line.frag"), InputError);
 }
 
-}  // namespace
+}  // namespace shader_source_test
 }  // namespace migiwa

@@ -14,7 +14,7 @@
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
-namespace {
+namespace simulation_thread_test {
 
 /// Takes frames until one satisfies `wanted`; fails after half a minute.
 bool waitFor(SimulationThread& simulation, FrameSnapshot& frame, const std::function<bool()>& wanted) {
@@ -448,5 +448,5 @@ TEST(SimulationThreadPace, RealTimeIsNotOutrun) {
   EXPECT_GT(wall, 0.19) << "40 frames of 5 ms";
 }
 
-}  // namespace
+}  // namespace simulation_thread_test
 }  // namespace migiwa

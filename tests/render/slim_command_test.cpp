@@ -13,11 +13,11 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace slim_command_test {
 
 namespace fs = std::filesystem;
 
-class SlimCommand : public testing::Test {
+class SlimCommand : public ::testing::Test {
  protected:
   SlimCommand() {
     std::ofstream(mesh_) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
@@ -30,10 +30,10 @@ class SlimCommand : public testing::Test {
 };
 
 TEST_F(SlimCommand, DrawsSurfaceAndNodesBesideTheFile) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   const int code =
       runCommandLine({"slim", mesh_.string(), "--out", out_.string(), "--nodes", "300", "--quiet"});
-  const std::string said = testing::internal::GetCapturedStdout();
+  const std::string said = ::testing::internal::GetCapturedStdout();
   ASSERT_EQ(code, kDone);
   EXPECT_NE(said.find(picture_.string()), std::string::npos) << said;
   EXPECT_GT(readSlimFile(out_).nodes.size(), 50U);
@@ -67,12 +67,12 @@ TEST_F(SlimCommand, WithoutEglTheFileIsWrittenAllTheSame) {
 }
 
 TEST_F(SlimCommand, FileMustNotBeThePicture) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   EXPECT_EQ(runCommandLine({"slim", mesh_.string(), "--out", picture_.string()}), kBadInput);
-  const std::string errors = testing::internal::GetCapturedStderr();
+  const std::string errors = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(errors.find("--out: expected a name that does not end in .png"), std::string::npos) << errors;
   EXPECT_FALSE(fs::exists(picture_));
 }
 
-}  // namespace
+}  // namespace slim_command_test
 }  // namespace migiwa

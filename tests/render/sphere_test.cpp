@@ -10,7 +10,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace sphere_test {
 
 constexpr int kWidth = 800, kHeight = 600;
 constexpr double kFov = 50;
@@ -32,7 +32,7 @@ Ellipse outline(double side, double depth, double radius) {
   return {std::numbers::pi * 0.5 * (right - left) * halfHeight * focal * focal, middle * focal};
 }
 
-class OneSphere : public testing::Test {
+class OneSphere : public ::testing::Test {
  protected:
   /// Black spheres; with the ground far above the eye only the backdrop is behind them.
   OneSphere() {
@@ -165,5 +165,5 @@ TEST_F(OneSphere, NonFiniteParticlesAreLeftOut) {
   EXPECT_EQ(draw(frameOf({Vec3f(nan, 0, 0), Vec3f(0, INFINITY, 0)}, 1)).rgba, backdrop.rgba);
 }
 
-}  // namespace
+}  // namespace sphere_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa {
-namespace {
+namespace still_command_test {
 
 class StillCommand : public testing::ProgramTest {
  protected:
@@ -92,5 +92,5 @@ TEST_F(StillCommand, NamesEveryFault) {
           "/view/look/walls: expected at most one entry for each of boundary/surfaces (2), found 3");
 }
 
-}  // namespace
+}  // namespace still_command_test
 }  // namespace migiwa

@@ -13,7 +13,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace surface_test {
 
 constexpr int kWidth = 800, kHeight = 600;
 constexpr double kFov = 50, kDistance = 4, kRadius = 0.5, kPi = std::numbers::pi;
@@ -232,5 +232,5 @@ TEST_F(SurfaceTest, ShadowIsAsDarkAsTheGroundIsCovered) {
   EXPECT_EQ(cells[0], 0);
 }
 
-}  // namespace
+}  // namespace surface_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
-namespace {
+namespace time_line_test {
 
 /// A wheel that turns, a tap, a drain and a gauge: all that a state is made of beside particles.
 Scene busyScene() {
@@ -280,5 +280,5 @@ TEST(TimeLineMemory, BranchesThatAreNoLongerKeptAreTheOldest) {
   EXPECT_EQ(view.branches[1].number, 6);
 }
 
-}  // namespace
+}  // namespace time_line_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/render/time_line_runs.h"
 
 namespace migiwa {
-namespace {
+namespace travel_test {
 
 /// Counts the frames that are begun, holds the one that is, or throws in the midst of it.
 class Gate : public EffectOf<Gate> {
@@ -199,5 +199,5 @@ TEST_F(Travel, AThrowOnTheWayLeavesThePanelWithWhatIsInForce) {
   expectPanelIsInForce();
 }
 
-}  // namespace
+}  // namespace travel_test
 }  // namespace migiwa

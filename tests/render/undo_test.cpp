@@ -17,7 +17,7 @@
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
-namespace {
+namespace undo_test {
 
 constexpr int kWidth = 660, kHeight = 1150;  // high enough for every panel to be open
 
@@ -345,5 +345,5 @@ TEST_F(UndoText, AFileThatWasChangedElsewhereLeavesNothingToTakeBack) {
   EXPECT_FALSE(viewer_->changes().canUndo());
 }
 
-}  // namespace
+}  // namespace undo_test
 }  // namespace migiwa

@@ -17,7 +17,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace water_test {
 
 constexpr int kWidth = 1280, kHeight = 720;
 
@@ -242,5 +242,5 @@ TEST_F(WaterStyle, ParticlesAreShownWhereThereIsNoSurface) {
   EXPECT_EQ(picture(options()), picture(particles));
 }
 
-}  // namespace
+}  // namespace water_test
 }  // namespace migiwa

@@ -12,7 +12,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace what_if_test {
 
 using namespace migiwa::testing;
 namespace fs = std::filesystem;
@@ -114,5 +114,5 @@ TEST_F(WhatIfTest, WhatWasAskedOfAnotherSceneIsDropped) {
   EXPECT_EQ(model_.points.size(), 1U);
 }
 
-}  // namespace
+}  // namespace what_if_test
 }  // namespace migiwa

@@ -20,7 +20,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace window_test {
 
 Image pictureIn(const Simulation& simulation, bool panels) {
   Viewer viewer(simulation.scene(), simulation.walls(), {scaleFor(640, 360), panels, false});
@@ -420,5 +420,5 @@ TEST(WindowTest, SizeIsAskedForInPixels) {
   EXPECT_NE(window.renderer().find("OpenGL 4."), std::string::npos) << window.renderer();
 }
 
-}  // namespace
+}  // namespace window_test
 }  // namespace migiwa

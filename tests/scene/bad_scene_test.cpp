@@ -11,7 +11,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace bad_scene_test {
 
 namespace fs = std::filesystem;
 
@@ -50,7 +50,7 @@ std::string withoutFolder(std::string text) {
   return text;
 }
 
-class BadScene : public testing::TestWithParam<std::string> {};
+class BadScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(BadScene, IsRefusedWithTheseMessages) {
   const fs::path file = kBad / (GetParam() + ".json");
@@ -79,7 +79,7 @@ std::vector<std::string> badScenes() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, BadScene, testing::ValuesIn(badScenes()),
+INSTANTIATE_TEST_SUITE_P(Corpus, BadScene, ::testing::ValuesIn(badScenes()),
                          [](const auto& instance) { return instance.param; });
 
 TEST(BadSceneFile, TheCorpusIsLarge) {
@@ -119,5 +119,5 @@ TEST(BadSceneText, DeepNestingIsRefusedInStride) {
   EXPECT_THROW(parseScene(std::string(1000000, '['), "deep.json"), InputError);
 }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace command_line_test {
 
 namespace fs = std::filesystem;
 
@@ -296,5 +296,5 @@ TEST_F(CommandLine, SummaryRefusesWhatIsNoReport) {
       << outcome.err;
 }
 
-}  // namespace
+}  // namespace command_line_test
 }  // namespace migiwa::testing

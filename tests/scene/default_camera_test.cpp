@@ -7,7 +7,7 @@
 #include "core/scene/scene.h"
 
 namespace migiwa {
-namespace {
+namespace default_camera_test {
 
 /// The largest angle (degrees) between the line of sight and a corner of the bounds.
 double widestAngle(const Camera& camera, const Bounds& bounds) {
@@ -59,5 +59,5 @@ TEST(DefaultCamera, IsFiniteForAnEmptyScene) {
   EXPECT_GT((camera.eye - camera.target).norm(), 0);
 }
 
-}  // namespace
+}  // namespace default_camera_test
 }  // namespace migiwa

@@ -17,7 +17,7 @@
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {
-namespace {
+namespace edited_file_test {
 
 namespace fs = std::filesystem;
 
@@ -144,5 +144,5 @@ TEST_F(EditedFile, AFitHasNoErrorAgainstAnotherShape) {
   EXPECT_FALSE(scene.surfaces[1]->fitError().has_value());
 }
 
-}  // namespace
+}  // namespace edited_file_test
 }  // namespace migiwa

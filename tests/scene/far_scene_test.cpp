@@ -12,7 +12,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace far_scene_test {
 
 using namespace migiwa::testing;
 namespace fs = std::filesystem;
@@ -239,5 +239,5 @@ TEST(SceneOrigin, FaultsFarFromZeroAreNamed) {
       "");
 }
 
-}  // namespace
+}  // namespace far_scene_test
 }  // namespace migiwa

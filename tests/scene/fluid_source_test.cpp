@@ -9,7 +9,7 @@
 #include "core/scene/sources.h"
 
 namespace migiwa {
-namespace {
+namespace fluid_source_test {
 
 std::vector<Vec3d> filled(const FluidSource& source, double spacing) {
   std::vector<Vec3d> centers;
@@ -173,5 +173,5 @@ TEST(FluidSources, EveryNameMakesASource) {
     EXPECT_NE(makeFluidSource(shape), nullptr) << fluidShapes()[static_cast<std::size_t>(shape)];
 }
 
-}  // namespace
+}  // namespace fluid_source_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
-namespace {
+namespace include_test {
 
 namespace fs = std::filesystem;
 
@@ -22,11 +22,12 @@ constexpr std::string_view kBase = R"({ "format": 1, "name": "Base", "duration":
   "effects": { "viscosity": { "xsph": 0.3 } },
   "view": { "clip": { "axis": "x", "at": 1 } } })";
 
-class Include : public testing::Test {
+class Include : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / (std::string("migiwa_include_") +
-                                              testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        fs::path(::testing::TempDir()) /
+        (std::string("migiwa_include_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     write("base.json", kBase);
@@ -227,5 +228,5 @@ TEST_F(Include, SetIsChecked) {
       "variant.json:/set/~1a~0: expected a JSON pointer such as \"/fluid/0/max\", found \"/a~\"");
 }
 
-}  // namespace
+}  // namespace include_test
 }  // namespace migiwa

@@ -14,7 +14,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace mesh_fill_test {
 
 bool inside(const TriangleMesh& mesh, const Vec3d& at) {
   return std::abs(windingNumber(mesh, at)) > 0.5;
@@ -167,5 +167,5 @@ TEST(MeshFill, AHugeMeshIsRefusedWithASpacingThatDoes) {
   std::filesystem::remove(file);
 }
 
-}  // namespace
+}  // namespace mesh_fill_test
 }  // namespace migiwa::testing

@@ -14,7 +14,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace mesh_union_test {
 
 constexpr double kSpacing = 1.0 / 32;
 
@@ -217,5 +217,5 @@ TEST(MeshUnion, AHollowStaysEmptyAndAPartWithinAPartDoesNot) {
   for (const Vec3d& p : less) EXPECT_GT(p.norm(), 0.28);
 }
 
-}  // namespace
+}  // namespace mesh_union_test
 }  // namespace migiwa::testing

@@ -5,7 +5,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace nearest_name_test {
 
 TEST(EditDistance, CountsLetters) {
   EXPECT_EQ(editDistance("", ""), 0);
@@ -31,5 +31,5 @@ TEST(NearestName, SurvivesAVeryLongWord) {
   EXPECT_EQ(nearestName(std::string(1000000, 'v'), names), "solver");
 }
 
-}  // namespace
+}  // namespace nearest_name_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace override_test {
 
 constexpr std::string_view kBase = R"({ "format": 1, "duration": 4,
   "fluid": [ { "shape": "box", "min": [0, 0, 0], "max": [1, 1, 1] } ] })";
@@ -116,5 +116,5 @@ TEST(Override, AllFaultsComeAtOnce) {
   EXPECT_EQ(std::count(faults.begin(), faults.end(), '\n'), 2) << faults;
 }
 
-}  // namespace
+}  // namespace override_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace particle_limit_test {
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
@@ -55,5 +55,5 @@ TEST(ParticleLimit, CountsAllSources) {
   EXPECT_EQ(particleCount(scene), 1000 + 20);
 }
 
-}  // namespace
+}  // namespace particle_limit_test
 }  // namespace migiwa

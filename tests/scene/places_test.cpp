@@ -9,7 +9,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace places_test {
 
 /// A rod of `size` (m) along x at `corner` in a file of the test's own.
 class Places : public ::testing::Test {
@@ -98,5 +98,5 @@ TEST(Placed, WaterOfAFewLayersIsSaidToBeTooThin) {
   EXPECT_TRUE(warnings(0.2, "[-9.81, 0, 0]").empty()) << "ten layers along gravity";
 }
 
-}  // namespace
+}  // namespace places_test
 }  // namespace migiwa::testing

@@ -7,7 +7,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace run_limit_test {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -77,5 +77,5 @@ TEST(RunLimit, EmittersAreCountedToTheEndOfTheRunNotOfTheScene) {
   EXPECT_TRUE(tooLateAnEnd(scene, 1e5, kUnlimited).has_value());
 }
 
-}  // namespace
+}  // namespace run_limit_test
 }  // namespace migiwa

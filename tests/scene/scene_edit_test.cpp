@@ -8,7 +8,7 @@
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
-namespace {
+namespace scene_edit_test {
 
 constexpr std::string_view kText = R"({
   "format": 1,
@@ -117,5 +117,5 @@ TEST(SceneEdit, StartIsOfWhatOnlyANewBeginningCanChange) {
     EXPECT_NE(with(change), start) << change;
 }
 
-}  // namespace
+}  // namespace scene_edit_test
 }  // namespace migiwa

@@ -6,7 +6,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace scene_reader_test {
 
 constexpr std::string_view kFull = R"({
   "$schema": "scene.schema.json",
@@ -126,5 +126,5 @@ TEST(SceneReader, ACopyIsIndependentOfTheFirst) {
   EXPECT_EQ(copy.fluid.size(), 2U);
 }
 
-}  // namespace
+}  // namespace scene_reader_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace scene_writer_test {
 
 void expectRoundTrip(const Scene& scene) {
   const std::string text = writeScene(scene);
@@ -58,5 +58,5 @@ TEST(SceneWriter, WritesDefaultsAndTheChosenCamera) {
   EXPECT_EQ(text.find("color_range"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace scene_writer_test
 }  // namespace migiwa

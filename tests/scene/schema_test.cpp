@@ -8,7 +8,7 @@
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
-namespace {
+namespace schema_test {
 
 constexpr std::string_view kRemedy = "is not what the program says any more: run ./run schema";
 
@@ -55,5 +55,5 @@ TEST(Schema, EveryFigureOfThePaperHasItsScene) {
   }
 }
 
-}  // namespace
+}  // namespace schema_test
 }  // namespace migiwa

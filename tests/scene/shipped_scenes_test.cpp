@@ -10,7 +10,7 @@
 #include "core/walls/boundary.h"
 
 namespace migiwa {
-namespace {
+namespace shipped_scenes_test {
 
 const std::filesystem::path kScenes = MIGIWA_SOURCE_DIR "/scenes";
 
@@ -108,5 +108,5 @@ TEST(ShippedScenes, BowlIsThePapers) {
   EXPECT_NEAR(scene.surfaces.at(0)->distance({1.3F, 0.2F, 0}, normal), 0.1F, 0.01F);
 }
 
-}  // namespace
+}  // namespace shipped_scenes_test
 }  // namespace migiwa

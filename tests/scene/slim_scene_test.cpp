@@ -12,7 +12,7 @@
 #include "core/walls/slim_wall.h"
 
 namespace migiwa {
-namespace {
+namespace slim_scene_test {
 
 namespace fs = std::filesystem;
 
@@ -137,5 +137,5 @@ TEST_F(SlimScene, AMeshOfFluidIsFilledAsABoxIs) {
   EXPECT_LT(scene.fluid[0]->count(0.1), 1700);
 }
 
-}  // namespace
+}  // namespace slim_scene_test
 }  // namespace migiwa

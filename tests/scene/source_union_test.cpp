@@ -10,7 +10,7 @@
 #include "core/simulation/fill.h"
 
 namespace migiwa {
-namespace {
+namespace source_union_test {
 
 using Sources = std::vector<std::shared_ptr<const FluidSource>>;
 
@@ -166,5 +166,5 @@ TEST(SourceUnion, WhatLiesOutsideOfTheWallsIsSaidWithItsShare) {
       "/fluid/0: 50 % of its particles (4000 of 8000) lie within or too near the walls and are left out");
 }
 
-}  // namespace
+}  // namespace source_union_test
 }  // namespace migiwa

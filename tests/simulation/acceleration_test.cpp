@@ -9,7 +9,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace acceleration_test {
 
 using namespace migiwa::testing;
 
@@ -55,5 +55,5 @@ TEST(Chebyshev, TakesAThirdOfTheIterationsAway) {
   EXPECT_LT(meanIterations(Acceleration::chebyshev), 0.7 * meanIterations(Acceleration::none));
 }
 
-}  // namespace
+}  // namespace acceleration_test
 }  // namespace migiwa

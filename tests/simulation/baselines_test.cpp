@@ -9,7 +9,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace baselines_test {
 
 using namespace migiwa::testing;
 
@@ -92,5 +92,5 @@ TEST(Baselines, GiveTheSameHashForAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
+}  // namespace baselines_test
 }  // namespace migiwa

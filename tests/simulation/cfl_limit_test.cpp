@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace cfl_limit_test {
 
 bool notMet(const Simulation& simulation) {
   const auto& trouble = simulation.statistics().trouble;
@@ -49,5 +49,5 @@ TEST(FrameAt, HoldsTheLargestQuotient) {
   EXPECT_EQ(simulation.frameAt(0), 0);
 }
 
-}  // namespace
+}  // namespace cfl_limit_test
 }  // namespace migiwa::testing

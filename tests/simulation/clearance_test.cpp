@@ -11,7 +11,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace clearance_test {
 
 using namespace migiwa::testing;
 
@@ -97,5 +97,5 @@ TEST(Clearance, NoDistanceChangesFasterThanReckonedWith) {
   EXPECT_EQ(steady, 4) << "all but the bowl, which ends at the rim of its ball";
 }
 
-}  // namespace
+}  // namespace clearance_test
 }  // namespace migiwa

@@ -5,7 +5,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace determinism_test {
 
 using namespace migiwa::testing;
 
@@ -40,5 +40,5 @@ TEST(Determinism, LookingAtARunDoesNotChangeIt) {
   EXPECT_EQ(snapshot.info.stateHash, watched.stateHash());
 }
 
-}  // namespace
+}  // namespace determinism_test
 }  // namespace migiwa

@@ -11,7 +11,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace emission_test {
 
 using namespace migiwa::testing;
 
@@ -164,5 +164,5 @@ TEST(Emission, TheHashDoesNotDependOnThreads) {
   EXPECT_EQ(hashes[0], hashes[2]);
 }
 
-}  // namespace
+}  // namespace emission_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace energy_balance_test {
 
 void advance(Simulation& simulation, double until) {
   while (simulation.frame() < simulation.frameAt(until)) simulation.advanceFrame();
@@ -174,5 +174,5 @@ TEST(EnergyBalance, TheHistoryStaysShortAndEven) {
     EXPECT_NEAR(history[k].time - history[k - 1].time, history[1].time, 1e-9) << k;
 }
 
-}  // namespace
+}  // namespace energy_balance_test
 }  // namespace migiwa::testing

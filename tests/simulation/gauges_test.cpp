@@ -13,7 +13,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace gauges_test {
 
 using namespace migiwa::testing;
 
@@ -202,5 +202,5 @@ TEST(StartMotion, SpinAndWavesAddToTheVelocity) {
   EXPECT_GE(source.largestSpeed(), source.velocityAt({0, 0, 1}).norm());
 }
 
-}  // namespace
+}  // namespace gauges_test
 }  // namespace migiwa

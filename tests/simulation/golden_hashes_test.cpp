@@ -17,7 +17,7 @@
 #include "tests/support/instruction_sets.h"
 
 namespace migiwa {
-namespace {
+namespace golden_hashes_test {
 
 namespace fs = std::filesystem;
 
@@ -91,7 +91,7 @@ void writeGoldenHashes() {
   writeTextFile(kGolden, golden.dump(2) + "\n");
 }
 
-}  // namespace
+}  // namespace golden_hashes_test
 }  // namespace migiwa
 
 int main(int argc, char** argv) {

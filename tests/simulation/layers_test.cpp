@@ -8,7 +8,7 @@
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
-namespace {
+namespace layers_test {
 
 struct Blocks {
   std::vector<double> across, up;  ///< where cuts between them are, and the ends, along x and y (m)
@@ -68,5 +68,5 @@ INSTANTIATE_TEST_SUITE_P(SizesAndOffsets, TouchingBlocks,
                                            Blocks{{0, 0.47, 1}, {0, 0.33, 0.5}, 0.7},
                                            Blocks{{0, 0.03, 0.22, 0.61, 1}, {0, 0.4}, 0}));
 
-}  // namespace
+}  // namespace layers_test
 }  // namespace migiwa

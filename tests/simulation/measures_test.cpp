@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace measures_test {
 
 using namespace migiwa::testing;
 
@@ -97,5 +97,5 @@ TEST(Measures, FramesAreAveraged) {
   EXPECT_NEAR(*sampler.result().rmsSpeed, std::sqrt(2.0), 1e-6);
 }
 
-}  // namespace
+}  // namespace measures_test
 }  // namespace migiwa

@@ -19,7 +19,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace memory_limit_test {
 
 constexpr double kMiB = 1024.0 * 1024;
 
@@ -146,5 +146,5 @@ TEST_F(MemoryLimit, StopsEmitters) {
   EXPECT_GT(simulation.view().positions.size(), 3600U);
 }
 
-}  // namespace
+}  // namespace memory_limit_test
 }  // namespace migiwa::testing

@@ -13,7 +13,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace mesh_scene_test {
 
 namespace fs = std::filesystem;
 using testing::ballMesh;
@@ -278,5 +278,5 @@ TEST_F(MeshScene, RandomUnionsAreSolids) {
   }
 }
 
-}  // namespace
+}  // namespace mesh_scene_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace moving_wall_test {
 
 using namespace migiwa::testing;
 
@@ -292,5 +292,5 @@ TEST(MovingWall, IsDrawnOnlyForThoseWhoLook) {
   }
 }
 
-}  // namespace
+}  // namespace moving_wall_test
 }  // namespace migiwa

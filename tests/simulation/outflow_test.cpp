@@ -13,7 +13,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace outflow_test {
 
 using namespace migiwa::testing;
 
@@ -327,5 +327,5 @@ TEST(Drains, AllThatAFrameShowsHasOneLength) {
   }
 }
 
-}  // namespace
+}  // namespace outflow_test
 }  // namespace migiwa

@@ -6,7 +6,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace pressure_test {
 
 using namespace migiwa::testing;
 
@@ -95,5 +95,5 @@ TEST(Pressure, IsNoneInFreeFall) {
   for (const float value : pressure) EXPECT_LT(static_cast<double>(value), 0.02 * kPerMetre * 0.3);
 }
 
-}  // namespace
+}  // namespace pressure_test
 }  // namespace migiwa

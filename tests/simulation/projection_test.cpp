@@ -15,7 +15,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace projection_test {
 
 using namespace migiwa::testing;
 
@@ -290,5 +290,5 @@ TEST(Projection, HasDefaultsOfItsOwn) {
   EXPECT_EQ(positions.tolerance, SolverParameters{}.tolerance);
 }
 
-}  // namespace
+}  // namespace projection_test
 }  // namespace migiwa

@@ -5,7 +5,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace rest_test {
 
 using namespace migiwa::testing;
 
@@ -70,5 +70,5 @@ TEST(Rest, ThePressureOfAColumnGrowsLinearlyWithDepth) {
   EXPECT_GT(r2, 0.97);
 }
 
-}  // namespace
+}  // namespace rest_test
 }  // namespace migiwa

@@ -11,7 +11,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa::testing {
-namespace {
+namespace settings_test {
 
 int gammaMethod(std::string_view name) {
   const auto names = gammaMethodNames();
@@ -140,5 +140,5 @@ TEST(Settings, AReferenceIsNoMethodOfASimulation) {
   }
 }
 
-}  // namespace
+}  // namespace settings_test
 }  // namespace migiwa::testing

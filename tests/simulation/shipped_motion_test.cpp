@@ -9,7 +9,7 @@
 #include "core/simulation/simulation.h"
 
 namespace migiwa {
-namespace {
+namespace shipped_motion_test {
 
 Scene shipped(const std::string& name, const std::vector<Override>& overrides = {}) {
   return readScene(MIGIWA_SOURCE_DIR "/scenes/" + name + ".json", overrides);
@@ -139,5 +139,5 @@ TEST(Faucet, FillsTheGlassAtItsRate) {
   EXPECT_NEAR(top + 0.5 * spacing, level, spacing);
 }
 
-}  // namespace
+}  // namespace shipped_motion_test
 }  // namespace migiwa

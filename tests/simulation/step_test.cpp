@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace step_test {
 
 using namespace migiwa::testing;
 
@@ -224,5 +224,5 @@ TEST(Step, SettingsTakeEffectWithTheNextFrame) {
   for (const float gamma : simulation.view().gamma) EXPECT_EQ(gamma, 1);
 }
 
-}  // namespace
+}  // namespace step_test
 }  // namespace migiwa

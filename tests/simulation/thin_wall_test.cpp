@@ -15,7 +15,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace thin_wall_test {
 
 using namespace migiwa::testing;
 
@@ -196,5 +196,5 @@ TEST(ThinWall, FastWaterStaysInAThinBowlOfAnyShape) {
   EXPECT_FALSE(simulation.stopped());
 }
 
-}  // namespace
+}  // namespace thin_wall_test
 }  // namespace migiwa

@@ -12,7 +12,7 @@
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
-namespace {
+namespace vector_pass_test {
 
 using testing::DenseTank;
 using testing::onEveryTarget;
@@ -147,5 +147,5 @@ TEST(VectorPasses, APairOnOnePointLeavesEveryKernelAndEffectFinite) {
   }
 }
 
-}  // namespace
+}  // namespace vector_pass_test
 }  // namespace migiwa

@@ -14,7 +14,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace wall_trouble_test {
 
 /// The water of 2,000 cells in a tank of 1 x 1 x 0.5 m, filled to half.
 Scene tankScene(const std::string& wall, const std::filesystem::path& folder) {
@@ -75,5 +75,5 @@ TEST(OverlappingWalls, SharesPastTheirRangeAreTrouble) {
   }
 }
 
-}  // namespace
+}  // namespace wall_trouble_test
 }  // namespace migiwa

@@ -11,7 +11,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace normal_estimation_test {
 
 using Shape = std::function<double(const Vec3d&, Vec3d&)>;
 
@@ -142,5 +142,5 @@ TEST(NormalEstimation, TurnsGivenNormalsOnlyWhereTheyDisagree) {
   }
 }
 
-}  // namespace
+}  // namespace normal_estimation_test
 }  // namespace migiwa

@@ -13,7 +13,7 @@
 #include "tests/slim/import_fixture.h"
 
 namespace migiwa {
-namespace {
+namespace shape_formats_test {
 
 using namespace testing;
 
@@ -263,5 +263,5 @@ TEST_F(ShapeFormats, PointsAtOnePlaceAreToldByTheirDistance) {
   EXPECT_EQ(notes[0], "100 points at the same place as another one were left out");
 }
 
-}  // namespace
+}  // namespace shape_formats_test
 }  // namespace migiwa

@@ -20,7 +20,7 @@
 #include "tests/slim/import_fixture.h"
 
 namespace migiwa {
-namespace {
+namespace shape_import_test {
 
 using namespace testing;
 
@@ -454,5 +454,5 @@ TEST(Bunny, IsToldInsideFromOutside) {
   EXPECT_GT(inside, 40);
 }
 
-}  // namespace
+}  // namespace shape_import_test
 }  // namespace migiwa

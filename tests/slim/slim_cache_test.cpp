@@ -11,7 +11,7 @@
 #include "core/walls/slim_wall.h"
 
 namespace migiwa {
-namespace {
+namespace slim_cache_test {
 
 namespace fs = std::filesystem;
 
@@ -21,10 +21,10 @@ constexpr const char* kCube =
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
 
 /// A cache and a mesh of its own for every test.
-class SlimCache : public testing::Test {
+class SlimCache : public ::testing::Test {
  protected:
   SlimCache() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::temp_directory_path() / ("migiwa_" + std::string(test->name()) + std::to_string(getpid()));
     fs::create_directories(folder_);
     if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
@@ -164,5 +164,5 @@ TEST_F(SlimCache, DoesWithoutAFolderThatCannotBeWritten) {
   EXPECT_GT(prepareSlim(source)->model->nodes().size(), 50U);
 }
 
-}  // namespace
+}  // namespace slim_cache_test
 }  // namespace migiwa

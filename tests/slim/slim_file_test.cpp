@@ -6,7 +6,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_file_test {
 
 SlimData someData(int degree) {
   ThreadPool pool(1);
@@ -132,5 +132,5 @@ TEST(SlimFile, RefusesHierarchiesThatAreNone) {
   EXPECT_TRUE(faultOf(slimFileText(data)).starts_with("x.json:/hierarchy/data: node 2: expected finite"));
 }
 
-}  // namespace
+}  // namespace slim_file_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_fit_test {
 
 using testing::ExactSphere;
 using testing::ExactTorus;
@@ -110,5 +110,5 @@ TEST(SlimFit, OfAPlaneIsThePlane) {
   }
 }
 
-}  // namespace
+}  // namespace slim_fit_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_hierarchy_test {
 
 struct Shape {
   const char* name;
@@ -145,5 +145,5 @@ TEST(EnclosingBall, IsHardlyLargerThanTheSmallest) {
   }
 }
 
-}  // namespace
+}  // namespace slim_hierarchy_test
 }  // namespace migiwa

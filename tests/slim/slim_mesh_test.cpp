@@ -8,7 +8,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_mesh_test {
 
 using testing::ExactSphere;
 using testing::ExactTorus;
@@ -166,5 +166,5 @@ TEST(SlimMesh, OpenSurfaceEndsAtItsRim) {
   }
 }
 
-}  // namespace
+}  // namespace slim_mesh_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_model_test {
 
 using testing::ExactSphere;
 using testing::ExactTorus;
@@ -177,5 +177,5 @@ TEST(SlimModel, SearchFindsEveryBallInReach) {
   }
 }
 
-}  // namespace
+}  // namespace slim_model_test
 }  // namespace migiwa

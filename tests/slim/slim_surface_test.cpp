@@ -10,7 +10,7 @@
 #include "tests/slim/exact_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace slim_surface_test {
 
 using testing::ExactSphere;
 
@@ -181,5 +181,5 @@ TEST(SlimSurface, PiecesAreTheNodesInReach) {
   }
 }
 
-}  // namespace
+}  // namespace slim_surface_test
 }  // namespace migiwa

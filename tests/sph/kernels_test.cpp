@@ -12,7 +12,7 @@
 #include "tests/sph/quadrature.h"
 
 namespace migiwa {
-namespace {
+namespace kernels_test {
 
 using quadrature::integrate;
 
@@ -60,9 +60,9 @@ double halfSpaceIntegral(Kernel kernel, double e) {
 }
 
 template <class Kernel>
-class KernelTest : public testing::Test {};
+class KernelTest : public ::testing::Test {};
 
-using Kernels = testing::Types<Poly6, Spiky, CubicSpline, WendlandC2>;
+using Kernels = ::testing::Types<Poly6, Spiky, CubicSpline, WendlandC2>;
 TYPED_TEST_SUITE(KernelTest, Kernels);
 
 // Distances on both sides of every place where a formula changes, and a fine sweep.
@@ -207,5 +207,5 @@ TEST(PairKernel, IsSpikyWhereTheDensityKernelIsFlatOrSpiky) {
   EXPECT_TRUE((std::is_same_v<PairKernel<WendlandC2>, WendlandC2>));
 }
 
-}  // namespace
+}  // namespace kernels_test
 }  // namespace migiwa

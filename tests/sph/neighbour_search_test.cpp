@@ -10,7 +10,7 @@
 #include "core/sph/neighbours.h"
 
 namespace migiwa {
-namespace {
+namespace neighbour_search_test {
 
 using Cloud = std::vector<Float4>;
 
@@ -190,5 +190,5 @@ TEST(NeighbourSearch, CanBeUsedAgainForAnotherCloud) {
   }
 }
 
-}  // namespace
+}  // namespace neighbour_search_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "core/sph/kernels.h"
 
 namespace migiwa {
-namespace {
+namespace resting_lattice_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -105,5 +105,5 @@ TEST(RestingLattice, BesideWallsReadsAPartOfWhatItsSumsHaveTooMuch) {
   }
 }
 
-}  // namespace
+}  // namespace resting_lattice_test
 }  // namespace migiwa

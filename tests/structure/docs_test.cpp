@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 
 namespace migiwa::structure {
-namespace {
+namespace docs_test {
 
 namespace fs = std::filesystem;
 
@@ -471,5 +471,5 @@ TEST(DocumentRules, AbbreviationsAreDefinedOnce) {
   expect(undefinedAbbreviations({}, {}, bibliography + "| [FM] | again |\n"), {"[FM] is defined twice"});
 }
 
-}  // namespace
+}  // namespace docs_test
 }  // namespace migiwa::structure

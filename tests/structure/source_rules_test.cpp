@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace migiwa::structure {
-namespace {
+namespace source_rules_test {
 
 SourceFile file(const std::string& path, const std::string& text) {
   return {path, text};
@@ -139,5 +139,5 @@ TEST(Habits, WhatIsConstStaysSo) {
   expectNone(checkHabits({file("tests/scene/a.cpp", cast)}));
 }
 
-}  // namespace
+}  // namespace source_rules_test
 }  // namespace migiwa::structure

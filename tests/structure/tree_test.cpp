@@ -9,7 +9,7 @@
 #include "tests/structure/source_rules.h"
 
 namespace migiwa::structure {
-namespace {
+namespace tree_test {
 
 namespace fs = std::filesystem;
 
@@ -69,5 +69,5 @@ TEST(Tree, KeepsItsHabits) {
   expectNone(checkHabits(tree()));
 }
 
-}  // namespace
+}  // namespace tree_test
 }  // namespace migiwa::structure

@@ -9,7 +9,7 @@
 #include "tests/support/same_stamp.h"
 
 namespace migiwa {
-namespace {
+namespace edited_file_test {
 
 namespace fs = std::filesystem;
 
@@ -44,5 +44,5 @@ TEST(StudyOfAnEditedMesh, IsRefusedAtTheNextRepetition) {
   fs::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace edited_file_test
 }  // namespace migiwa

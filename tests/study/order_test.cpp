@@ -7,7 +7,7 @@
 #include "core/study/study.h"
 
 namespace migiwa {
-namespace {
+namespace order_test {
 
 TEST(MeasuredOrder, IsThePowerThatTheErrorFollows) {
   for (const double power : {2.0, 1.0, -0.5}) {
@@ -59,5 +59,5 @@ TEST(Convergence, HasALineForEachCombinationOfTheOtherValues) {
   EXPECT_FALSE(lines[3].order);
 }
 
-}  // namespace
+}  // namespace order_test
 }  // namespace migiwa

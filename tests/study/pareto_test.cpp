@@ -7,7 +7,7 @@
 #include "core/study/study.h"
 
 namespace migiwa {
-namespace {
+namespace pareto_test {
 
 std::vector<std::size_t> byDefinition(const std::vector<CostAndError>& points) {
   std::vector<std::size_t> front;
@@ -47,5 +47,5 @@ TEST(ParetoFront, OfNothingIsEmpty) {
   EXPECT_TRUE(paretoFront({{std::nullopt, 1.0}, {1.0, std::nullopt}}).empty());
 }
 
-}  // namespace
+}  // namespace pareto_test
 }  // namespace migiwa

@@ -4,7 +4,7 @@
 #include "core/study/study.h"
 
 namespace migiwa {
-namespace {
+namespace plan_test {
 
 StudyPlan plan() {
   return {std::string(MIGIWA_SOURCE_DIR) + "/scenes/still_tank.json",
@@ -64,5 +64,5 @@ TEST(StudyPlan, AFingerprintIsOfOneRunOfOneStudy) {
   EXPECT_EQ(runFingerprint(plan(), 1), runFingerprint(other, 1));
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace pressure_profile_test {
 
 using namespace migiwa::testing;
 
@@ -64,5 +64,5 @@ TEST(PressureProfile, IsNoneWithoutATankOrAWatch) {
   EXPECT_FALSE(unwatched.error());
 }
 
-}  // namespace
+}  // namespace pressure_profile_test
 }  // namespace migiwa

@@ -8,7 +8,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace reference_errors_test {
 
 using namespace migiwa::testing;
 
@@ -109,5 +109,5 @@ TEST(ReferenceErrors, DensityIsOverTheReferenceGammaWhateverTheRunTook) {
   EXPECT_EQ(*errorsOf({at(1, 1, 1)}, {1}).densityMean, 0);
 }
 
-}  // namespace
+}  // namespace reference_errors_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace migiwa {
-namespace {
+namespace series_test {
 
 /// 2 + cos(2 pi t / period) times kept^(t / period), every `step` (s), and some ripple.
 Series wave(double period, double kept, double step, double until, double ripple = 0) {
@@ -55,5 +55,5 @@ TEST(Series, IsReadBetweenItsSamples) {
   EXPECT_DOUBLE_EQ(peakBetween(series, 0, 3)->time, 2);
 }
 
-}  // namespace
+}  // namespace series_test
 }  // namespace migiwa

@@ -9,7 +9,7 @@
 #include "tests/study/study_program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace study_command_test {
 
 class StudyCommand : public StudyProgramTest {
  protected:
@@ -103,5 +103,5 @@ TEST_F(StudyCommand, AllFaultsAreReportedAtOnce) {
   EXPECT_FALSE(fs::exists(folder_ / "study.csv"));
 }
 
-}  // namespace
+}  // namespace study_command_test
 }  // namespace migiwa::testing

@@ -8,7 +8,7 @@
 #include "tests/study/study_program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace study_resume_test {
 
 class StudyOfForty : public StudyProgramTest {
  protected:
@@ -115,5 +115,5 @@ TEST_F(StudyOfForty, RunsAreAlikeWhereWhatIsVariedChangesNothing) {
   for (const auto& [directions, states] : byDirections) EXPECT_EQ(states.size(), 1U) << directions;
 }
 
-}  // namespace
+}  // namespace study_resume_test
 }  // namespace migiwa::testing

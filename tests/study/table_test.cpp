@@ -4,7 +4,7 @@
 #include "core/study/study.h"
 
 namespace migiwa {
-namespace {
+namespace table_test {
 
 StudyPlan plan() {
   return {"tank.json", {}, {{"/a", {"1", "[2,3]"}}, {"/b", {"x"}}}, 1};
@@ -51,5 +51,5 @@ TEST(StudyTable, AFailedRunIsOnNoFront) {
   EXPECT_EQ(frontOf(runs, accuracyMeasures().front()), (std::vector<std::size_t>{1}));
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace migiwa

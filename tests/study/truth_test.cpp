@@ -9,7 +9,7 @@
 #include "core/base/messages.h"
 
 namespace migiwa {
-namespace {
+namespace truth_test {
 
 const std::filesystem::path kScenes = MIGIWA_SOURCE_DIR "/scenes/truth";
 
@@ -170,5 +170,5 @@ TEST(Truth, TheDamBreakOntoABoxIsKleefsmans) {
   expectWithin(found, "P1 peak at", 0.1);
 }
 
-}  // namespace
+}  // namespace truth_test
 }  // namespace migiwa

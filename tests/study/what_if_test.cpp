@@ -6,7 +6,7 @@
 #include "tests/support/test_scenes.h"
 
 namespace migiwa {
-namespace {
+namespace what_if_test {
 
 using namespace migiwa::testing;
 
@@ -52,5 +52,5 @@ TEST(WhatIf, WithTheSettingsOfNowItIsTheRunsFuture) {
   EXPECT_TRUE(answer.trouble.empty());
 }
 
-}  // namespace
+}  // namespace what_if_test
 }  // namespace migiwa

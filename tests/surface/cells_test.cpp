@@ -11,7 +11,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa::surface {
-namespace {
+namespace cells_test {
 
 /// The corners of a cell that are joined along edges, on one side.
 int partsOf(int config, bool water) {
@@ -114,5 +114,5 @@ TEST(SurfaceGrid, HoldsTheSumOverAllParticlesOverGamma) {
   }
 }
 
-}  // namespace
+}  // namespace cells_test
 }  // namespace migiwa::surface

@@ -12,7 +12,7 @@
 #include "tests/surface/mesh_checks.h"
 
 namespace migiwa {
-namespace {
+namespace free_surface_test {
 
 using testing::crossingsOf;
 using testing::faultsOf;
@@ -212,5 +212,5 @@ TEST(SurfaceThreads, AndTheOrderOfParticlesDoNotMatter) {
   EXPECT_TRUE(sameBytes(surfaceOf(positions, {}, 2, positions), one));
 }
 
-}  // namespace
+}  // namespace free_surface_test
 }  // namespace migiwa

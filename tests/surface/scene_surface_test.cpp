@@ -17,7 +17,7 @@
 #include "tests/surface/mesh_checks.h"
 
 namespace migiwa {
-namespace {
+namespace scene_surface_test {
 
 using testing::crossingsOf;
 using testing::faultsOf;
@@ -214,5 +214,5 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryScene, ::testing::ValuesIn(shippedScenes(
   return name;
 });
 
-}  // namespace
+}  // namespace scene_surface_test
 }  // namespace migiwa

@@ -16,7 +16,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace section_test {
 
 constexpr double kSupport = 0.1;
 /// Particles so fine that their sum is the integral but for less than what is asked of the section.
@@ -314,5 +314,5 @@ TEST(Section, ItsTableHasThePlacesOfTheFile) {
   EXPECT_EQ(sectionCsv(raster, {1000000, 0, 0}, "speed").substr(12, 22), "1000000.25,0.25,0.5,1\n");
 }
 
-}  // namespace
+}  // namespace section_test
 }  // namespace migiwa

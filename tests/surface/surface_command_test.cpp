@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 
 namespace migiwa::testing {
-namespace {
+namespace surface_command_test {
 
 namespace fs = std::filesystem;
 
@@ -144,5 +144,5 @@ TEST_F(SurfaceCommand, ADiskThatFillsLeavesNothingHalfWritten) {
   EXPECT_TRUE(fs::is_empty(folder_ / "mesh"));
 }
 
-}  // namespace
+}  // namespace surface_command_test
 }  // namespace migiwa::testing

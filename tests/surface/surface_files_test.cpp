@@ -17,7 +17,7 @@
 #include "core/io/particle_export.h"
 
 namespace migiwa {
-namespace {
+namespace surface_files_test {
 
 SurfaceMesh tetrahedron() {
   SurfaceMesh mesh;
@@ -238,5 +238,5 @@ TEST_F(ParticleImport, NamesWhatIsWrong) {
   EXPECT_NE(faultOf("ply\n").find("cut off"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace surface_files_test
 }  // namespace migiwa

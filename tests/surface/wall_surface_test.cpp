@@ -13,7 +13,7 @@
 #include "tests/surface/mesh_checks.h"
 
 namespace migiwa {
-namespace {
+namespace wall_surface_test {
 
 using testing::crossingsOf;
 using testing::faultsOf;
@@ -190,5 +190,5 @@ TEST(WallSurface, AroundASolidInTheLiquidIsItsSurface) {
   EXPECT_NEAR(enclosedVolume(mesh) / (0.8 * 0.5 * 0.6 - solid), 1, 0.01);
 }
 
-}  // namespace
+}  // namespace wall_surface_test
 }  // namespace migiwa

@@ -11,7 +11,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace boundary_test {
 
 TEST(Boundary, WithoutWallsNothingIsNear) {
   const Boundary boundary;
@@ -88,5 +88,5 @@ TEST(Boundary, BetweenTwoWallsWithoutRoomTheProjectionIsMidway) {
   EXPECT_NEAR(p.y(), 0.02F, 1e-5F);
 }
 
-}  // namespace
+}  // namespace boundary_test
 }  // namespace migiwa

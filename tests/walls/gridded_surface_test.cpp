@@ -5,7 +5,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace gridded_surface_test {
 
 constexpr float kSupport = 0.1F, kMargin = 0.25F * kSupport;
 
@@ -81,5 +81,5 @@ TEST(GriddedSurface, OnlyStandsInForCostlyShapes) {
   EXPECT_EQ(GriddedSurface(sphere, kSupport, pool).exact(), sphere);
 }
 
-}  // namespace
+}  // namespace gridded_surface_test
 }  // namespace migiwa

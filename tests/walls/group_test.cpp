@@ -7,7 +7,7 @@
 #include "core/walls/boundary.h"
 
 namespace migiwa {
-namespace {
+namespace group_test {
 
 std::string groupOf(const std::string& vessels, const std::string& more = {}) {
   return R"({ "format": 1, "particle_spacing": 0.05, "boundary": { "surfaces": [ { "shape": "group", "surfaces": [ )" +
@@ -86,5 +86,5 @@ TEST(Group, RefusesWhatIsNoVessel) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace group_test
 }  // namespace migiwa

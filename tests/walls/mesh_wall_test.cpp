@@ -19,7 +19,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace migiwa {
-namespace {
+namespace mesh_wall_test {
 
 using testing::ballMesh;
 using testing::blockMesh;
@@ -447,5 +447,5 @@ TEST(BoxOf, SeesABoxHoweverItIsTurnedAndNothingElse) {
       together({blockMesh({0, 0, 0}, {1, 1, 1}), blockMesh({0, 0, 0}, {0.5, 1, 0.5})}), false, "test")));
 }
 
-}  // namespace
+}  // namespace mesh_wall_test
 }  // namespace migiwa

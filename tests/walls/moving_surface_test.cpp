@@ -8,7 +8,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace moving_surface_test {
 
 Motion turning() {
   Motion motion;
@@ -149,5 +149,5 @@ TEST(Motion, KeyframesAreMetAndSmoothOnesAreAtRestThere) {
   EXPECT_NEAR(height(1.5), 0.25, 1e-12);
 }
 
-}  // namespace
+}  // namespace moving_surface_test
 }  // namespace migiwa

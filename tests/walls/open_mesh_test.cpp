@@ -14,7 +14,7 @@
 #include "core/walls/mesh_wall.h"
 
 namespace migiwa {
-namespace {
+namespace open_mesh_test {
 
 /// A strip along the unit circle that comes back to itself after so many half turns.
 std::string stripText(int halfTurns) {
@@ -78,5 +78,5 @@ TEST(MeshSource, SaysWhereAMeshIsOpen) {
   std::filesystem::remove(file);
 }
 
-}  // namespace
+}  // namespace open_mesh_test
 }  // namespace migiwa

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace migiwa {
-namespace {
+namespace shapes_test {
 
 const Rotation kTurn{{1, 2, -0.5}, 37};
 
@@ -126,5 +126,5 @@ TEST(Box, BoundsHoldTheTurnedCorners) {
   EXPECT_NEAR(box.bounds().max.z(), 1, 1e-9);
 }
 
-}  // namespace
+}  // namespace shapes_test
 }  // namespace migiwa

@@ -6,7 +6,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace thin_wall_test {
 
 TEST(ThinWall, ThicknessIsTheLeastWayThrough) {
   EXPECT_FLOAT_EQ(Box({0, 0, 0}, {1, 0.25, 2}, Box::Fluid::outside, Rotation{{1, 1, 0}, 30}).thickness(),
@@ -80,5 +80,5 @@ TEST(ThinWall, WaysThatEndAtOrSlideAlongTheSolidDoNotCross) {
   EXPECT_TRUE(normal.isApprox(Vec3f::UnitY()));
 }
 
-}  // namespace
+}  // namespace thin_wall_test
 }  // namespace migiwa

@@ -10,7 +10,7 @@
 #include "core/walls/shapes.h"
 
 namespace migiwa {
-namespace {
+namespace wall_index_test {
 
 /// Boxes and balls anywhere in a tank, some of them thin, one that moves, and a plane.
 std::vector<std::shared_ptr<const Surface>> manyWalls(int count, unsigned seed) {
@@ -114,5 +114,5 @@ TEST(WallIndex, FewWallsAreAskedOneByOne) {
   EXPECT_EQ(boundary.near({1, 1, 1}, 0.2F).size(), walls.size()) << "beyond the reach that was asked for";
 }
 
-}  // namespace
+}  // namespace wall_index_test
 }  // namespace migiwa
