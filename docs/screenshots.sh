@@ -142,7 +142,7 @@ screenshotsOfWindow() {
 EVENTS
   scriptPicture window_particle dam_break \
     --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' <<'EVENTS'
-[{"play_to": 1.5}, {"click": [0.416, 0.648]}, {"wait": 25}, {"move": [0.95, 0.95]}, {"picture": "picture.png"}]
+[{"play_to": 1.5}, {"click": [0.416, 0.648]}, {"wait_for": "reference"}, {"wait_while": "more methods", "within": 300}, {"move": [0.95, 0.95]}, {"picture": "picture.png"}]
 EVENTS
   scriptPicture window_particles dam_break --size 1280x900 --scale 1 --set '/view/clip=null' <<'EVENTS'
 [{"play_to": 0.9}, {"press": "Solver"}, {"press": "Section"}, {"press": "Particles"}, {"press": "Select"}, {"drag_view": [[0.62, 0.3], [0.9, 0.78]]},
@@ -155,7 +155,7 @@ EVENTS
 EVENTS
   scriptPicture window_changes dam_break <<'EVENTS'
 [{"play_to": 0.5}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "c"}, {"wait": 0.5}, {"choose": "Colour", "entry": "speed"},
- {"press": "Solver"}, {"press": "Changes"}, {"press": "Undo"}, {"wait": 0.5}, {"picture": "picture.png"}]
+ {"press": "Solver"}, {"press": "Changes"}, {"press": "Undo"}, {"move": [0.5, 0.2]}, {"wait": 0.5}, {"picture": "picture.png"}]
 EVENTS
   scriptPicture window_command dam_break <<'EVENTS'
 [{"play_to": 0.4}, {"press": "Tolerance", "at": 0.6}, {"wait": 0.3}, {"play_to": 0.7}, {"choose": "Colour", "entry": "speed"},

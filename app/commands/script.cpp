@@ -79,6 +79,7 @@ const std::vector<EventKind>& eventKinds() {
       {"play_to", {}},
       {"wait", {}},
       {"wait_for", {"within"}},
+      {"wait_while", {"within"}},
       {"picture", {}},
   };
   return kinds;
@@ -183,7 +184,7 @@ class ScriptEvent {
 void checkEvent(const ScriptEvent& event) {
   const std::string_view kind = event.kind();
   if (kind == "press" || kind == "drag" || kind == "choose" || kind == "type" || kind == "wait_for" ||
-      kind == "picture")
+      kind == "wait_while" || kind == "picture")
     event.text();
   if (kind == "press") event.number("at", 0, 1, 0);
   if (kind == "drag") event.number("from", 0, 1), event.number("to", 0, 1);
@@ -198,7 +199,7 @@ void checkEvent(const ScriptEvent& event) {
   if (kind == "wheel") event.number("wheel", -100, 100), event.places("over", 1);
   if (kind == "play_to") event.number("play_to", 0, kLongestRun);
   if (kind == "wait") event.number("wait", 0, kLongestWait);
-  if (kind == "wait_for") event.number("within", 0, kLongestWait, kUsualWait);
+  if (kind == "wait_for" || kind == "wait_while") event.number("within", 0, kLongestWait, kUsualWait);
   if (kind == "picture" && !event.text().ends_with(".png"))
     event.refuse("a name that ends in .png", "\"" + event.text() + "\"");
   event.held();
@@ -255,8 +256,8 @@ class ScriptedWindow {
       const auto until =
           ScriptClock::now() + std::chrono::duration<double>(event.number(kind, 0, kLongestWait));
       while (ScriptClock::now() < until) pass();
-    } else if (kind == "wait_for") {
-      waitFor(event);
+    } else if (kind == "wait_for" || kind == "wait_while") {
+      waitFor(event, kind == "wait_for");
     } else {
       settle();
       const std::filesystem::path file = job_.folder / event.text();
@@ -329,15 +330,18 @@ class ScriptedWindow {
     }
     hands_.look();
   }
-  void waitFor(const ScriptEvent& event) {
+  /// Until the text is shown, or no longer.
+  void waitFor(const ScriptEvent& event, bool shown) {
     const double within = event.number("within", 0, kLongestWait, kUsualWait);
     const auto until = ScriptClock::now() + std::chrono::duration<double>(within);
-    while (shownText().find(event.text()) == std::string::npos) {
+    while ((shownText().find(event.text()) != std::string::npos) != shown) {
       if (ScriptClock::now() > until) {
+        const std::string expected = "\"" + event.text() + "\" to be " + (shown ? "shown" : "gone") +
+                                     " within " + formatNumber("%g s", within);
+        if (!shown) event.refuse(expected, "it still there");
         const std::vector<std::string> near = namesLike(event.text(), 3);
-        event.refuse(
-            "\"" + event.text() + "\" to be shown within " + formatNumber("%g s", within),
-            "nothing nearer than " + quotedList(std::vector<std::string_view>(near.begin(), near.end())));
+        event.refuse(expected, "nothing nearer than " +
+                                   quotedList(std::vector<std::string_view>(near.begin(), near.end())));
       }
       pass();
     }

@@ -91,6 +91,8 @@ TEST_F(Script, TwoRunsGiveTheSameBytes) {
     {"move": [0.1, 0.9]},
     {"key": "f1"},
     {"wait_for": "Keys and mouse", "within": 5},
+    {"key": "f1"},
+    {"wait_while": "Keys and mouse", "within": 5},
     {"key": "left"},
     {"key": "z", "control": true},
     {"picture": "b.png"},
@@ -143,6 +145,9 @@ TEST_F(Script, RefusesWhatItCannotDoWithItsLineAndWhatThereIs) {
       << error_;
   EXPECT_NE(faultOf(R"([{"picture": "a.jpg"}])").find("ends in .png"), std::string::npos) << error_;
   EXPECT_NE(faultOf(R"([{"wait_for": "Ply", "within": 0.1}])").find("\"Play\""), std::string::npos) << error_;
+  EXPECT_NE(faultOf(R"([{"wait_while": "Play", "within": 0.1}])").find("found it still there"),
+            std::string::npos)
+      << error_;
   EXPECT_NE(faultOf(R"({"press": "Play"})").find("expected a list of events"), std::string::npos) << error_;
   EXPECT_NE(faultOf("[{\"press\": }]").find("script.json:1:"), std::string::npos) << error_;
   // All that can be told before is told before, and at once.
