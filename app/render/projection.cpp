@@ -46,8 +46,9 @@ std::optional<std::array<float, 2>> pixelOf(const Vec3f& place, const Projection
   const Eigen::Vector4f clip =
       projection.clip * (projection.view * Eigen::Vector4f(place.x(), place.y(), place.z(), 1));
   if (!(clip.w() > static_cast<float>(projection.near))) return std::nullopt;
-  return {{static_cast<float>(scene.x) + 0.5F * (1 + clip.x() / clip.w()) * static_cast<float>(scene.width),
-           static_cast<float>(scene.y) + 0.5F * (1 - clip.y() / clip.w()) * static_cast<float>(scene.height)}};
+  return {
+      {static_cast<float>(scene.x) + 0.5F * (1 + clip.x() / clip.w()) * static_cast<float>(scene.width),
+       static_cast<float>(scene.y) + 0.5F * (1 - clip.y() / clip.w()) * static_cast<float>(scene.height)}};
 }
 
 namespace {

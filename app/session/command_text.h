@@ -14,8 +14,8 @@ namespace migiwa {
 
 /// What a window shows.
 struct ShownMoment {
-  const Scene& scene;  ///< as it was read
-  std::filesystem::path file;  ///< as it was named
+  const Scene& scene;                      ///< as it was read
+  std::filesystem::path file;              ///< as it was named
   const std::vector<Override>& overrides;  ///< with which it was read
   bool saved = true;                       ///< the scene is what the file holds
   const TimeLineView& line;
