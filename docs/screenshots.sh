@@ -107,7 +107,7 @@ screenshotsOfThumbnails() {
   done
 }
 
-# windowPicture NAME [SCENE [OPTION...]] < HANDS: screenshots/NAME.webp, the first picture that the hands at the window keep
+# windowPicture NAME [SCENE [OPTION...]] < HANDS: screenshots/NAME.webp, the first picture that the hands at a real window keep
 # with the key P (tests/render/window_hands.py).
 windowPicture() {
   local name=$1 folder=out/screenshots/$1 root=$PWD
@@ -120,24 +120,47 @@ windowPicture() {
   cwebp -quiet -q 60 -m 6 "$folder/migiwa_0001.png" -o "screenshots/$name.webp"
 }
 
+# scriptPicture NAME SCENE [RENDER OPTION...] < EVENTS: screenshots/NAME.webp, the picture.png of the events at the window.
+scriptPicture() {
+  local name=$1 scene=$2 folder=out/screenshots/$1
+  mkdir -p "$folder"
+  cat >"$folder/events.json"
+  "$migiwa" render "scenes/$scene.json" --ui --script "$folder/events.json" --out "$folder" "${@:3}"
+  cwebp -quiet -q 60 -m 6 "$folder/picture.png" -o "screenshots/$name.webp"
+}
+
 screenshotsOfWindow() {
   setup test
-  local scene=$PWD/scenes/dam_break.json
-  say "The window: its start, its gallery, a branch on the time line, a particle that is looked into, a section, changes"
+  say "The window: its start and its gallery, on a display"
   windowPicture window_start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
   windowPicture window_gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
-  windowPicture window_time_line "$scene" \
-    <<<$'wait 5\nkey space\nwait 1\nclick 620 685\nwait 2\nkey c\nkey space\nwait 2\nkey space\nmove 900 300\nwait 1\nkey p\nwait 3\nclose'
-  windowPicture window_particle "$scene" \
-    --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' \
-    <<<$'wait 9\nkey space\nwait 2\nclick 720 408\nwait 25\nmove 200 700\nwait 1\nkey p\nwait 3\nclose'
-  # However far the run has come, back to 1.4 s on its time line of 16 s; then the heading, "Show", "Fit", the list of fields,
-  # and pressure in it.
-  windowPicture window_section "$scene" --set /duration=16 --set '/view/camera={"eye":[1.2,1.1,4.2],"target":[1.55,0.42,0.8],"fov_degrees":34}' \
-    <<<$'wait 12\nkey space\nwait 3\nclick 538 685\nwait 3\nclick 100 615\nwait 2\nclick 135 638\nwait 2\nclick 198 661\nwait 2\nclick 210 684\nwait 2\nclick 160 603\nwait 2\nkey Right\nwait 4\nmove 620 440\nwait 1\nmove 622 440\nwait 2\nkey p\nwait 3\nclose'
-  # Iterations, the correction and the colour are changed, one change is taken back, and the heading is opened.
-  windowPicture window_changes "$scene" \
-    <<<$'wait 6\nkey space\nwait 3\nclick 160 293\nwait 2\nkey c\nwait 2\nclick 134 546\nwait 2\nclick 234 523\nwait 2\nclick 100 247\nwait 2\nclick 100 500\nwait 2\nclick 80 523\nwait 3\nmove 800 250\nwait 2\nkey p\nwait 3\nclose'
+  say "The window: keys, a branch on the time line, a particle that is looked into, particles, a section, changes, a command"
+  scriptPicture window_keys dam_break <<<'[{"play_to": 0.5}, {"key": "f1"}, {"picture": "picture.png"}]'
+  scriptPicture window_time_line dam_break <<'EVENTS'
+[{"play_to": 1.4}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "z", "control": true}, {"wait": 0.5}, {"key": "home"},
+ {"wait": 1}, {"play_to": 0.5}, {"key": "c"}, {"wait": 0.5}, {"play_to": 1.1}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_particle dam_break \
+    --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' <<'EVENTS'
+[{"play_to": 1.5}, {"click": [0.416, 0.648]}, {"wait_for": "reference"}, {"wait_while": "more methods", "within": 300}, {"move": [0.95, 0.95]}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_particles dam_break --size 1280x900 --scale 1 --set '/view/clip=null' <<'EVENTS'
+[{"play_to": 0.9}, {"press": "Solver"}, {"press": "Section"}, {"press": "Particles"}, {"press": "Select"}, {"drag_view": [[0.62, 0.3], [0.9, 0.78]]},
+ {"move": [0.4, 0.2]}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_section dam_break \
+    --set '/view/camera={"eye":[1.2,1.1,4.2],"target":[1.55,0.42,0.8],"fov_degrees":34}' <<'EVENTS'
+[{"press": "Solver"}, {"press": "Section"}, {"press": "Show", "at": 0}, {"press": "Fit"}, {"choose": "Field", "entry": "pressure"},
+ {"play_to": 1.4}, {"move": [0.31, 0.7]}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_changes dam_break <<'EVENTS'
+[{"play_to": 0.5}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "c"}, {"wait": 0.5}, {"choose": "Colour", "entry": "speed"},
+ {"press": "Solver"}, {"press": "Changes"}, {"press": "Undo"}, {"move": [0.5, 0.2]}, {"wait": 0.5}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_command dam_break <<'EVENTS'
+[{"play_to": 0.4}, {"press": "Tolerance", "at": 0.6}, {"wait": 0.3}, {"play_to": 0.7}, {"choose": "Colour", "entry": "speed"},
+ {"press": "Copy as command"}, {"wait_for": "It is on the clipboard"}, {"move": [0.5, 0.3]}, {"picture": "picture.png"}]
+EVENTS
 }
 
 # screenshotsRayTraced [SIZE [SAMPLES]]
@@ -187,6 +210,8 @@ command_screenshots() {
   screenshotsRayTraced
   say "Figure 6 of the paper: water in a bowl, cut at the middle plane"
   compareSheet bowl_compare bowl --times 0.3,1,6 --size 480x300
+  cwebp -quiet -q 85 -m 6 screenshots/bowl_compare.png -o screenshots/bowl_compare.webp
+  rm screenshots/bowl_compare.png
   say "A drop on a plate, without friction above and with it below"
   "$migiwa" render scenes/droplet.json --out out/screenshots/droplet --times 0,0.01,0.02,0.06 --size 480x300 \
     --compare /effects/wall_friction/coefficient=0,0.4

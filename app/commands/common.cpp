@@ -18,6 +18,7 @@
 #include "app/commands/command.h"
 #include "app/commands/plots.h"
 #include "app/render/image.h"
+#include "app/ui/bindings.h"
 #include "app/viewer/viewer.h"
 #include "core/base/files.h"
 #include "core/base/messages.h"
@@ -358,17 +359,9 @@ Command viewCommand() {
                   "Memory that the states of the time line may take; the less, the longer the way to a time.",
               .range = {{1, 1'000'000}}}},
             [options](const CommonOptions& common) { return view(*options, common); },
-            "Mouse: left turns, right or middle or shift moves, wheel zooms, a double click looks there; "
-            "the\n"
-            "wheel with control moves a section.\n"
-            "Keys: space plays and pauses, right and left arrow step a frame forth and back, Home and End "
-            "go\n"
-            "to the ends of the time line, R begins anew, C corrects or not, H hides the panels, P saves a\n"
-            "picture here as migiwa_0001.png and so on. Control and Z takes a change back, control and Y "
-            "does it\n"
-            "again.\n"
-            "The scene's file is watched: a change to it is taken over as soon as it is saved.\n"
-            "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
+            bindingsText() +
+                "\nThe scene's file is watched: a change to it is taken over as soon as it is saved.\n"
+                "MIGIWA_SHADERS=FOLDER in the environment takes the shaders from there."};
       }};
 }
 

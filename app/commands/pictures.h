@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/commands/plane.h"
 #include "app/render/image.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
@@ -28,20 +29,32 @@ inline constexpr std::array<std::string_view, 3> kRenderStyles{"particles", "wat
 inline constexpr long kFewestSamples = 2, kMostSamples = 65536;  ///< of a pixel
 
 struct RenderOptions {
-  std::string scene, out, times, size = "1280x720", compare, style{kRenderStyles[0]}, film;
+  std::string scene, out, times, size = "1280x720", compare, style{kRenderStyles[0]}, film, script;
   bool panels = false, timings = false;
   std::optional<int> samples;
   std::optional<long> seed;
   std::optional<double> fps, from, to;  ///< of a film
+  std::optional<double> scale;
+  std::vector<std::string> changes;  ///< --set-at, in order
+  PlaneWords section;                ///< one is drawn where a plane is given
+  bool hideWalls = false, noCut = false, noLines = false, fit = false;
 };
 /// As `migiwa render --help` lists them.
 std::vector<Option> renderOptions(RenderOptions& options);
+
+/// Settings that come into force on the way, and the options that ask for them.
+struct LaterSettings {
+  double time = 0;  ///< (s)
+  Settings settings;
+  std::string words;
+};
 
 /// One run of the scene: what is changed in it, and how that is called on the picture.
 struct RenderVariant {
   std::vector<Override> overrides;
   std::string note;
   Scene scene;
+  std::vector<LaterSettings> later{};  ///< in the order of their times
 };
 
 /// A film: pictures at even distances of time.
@@ -58,6 +71,9 @@ struct RenderJob {
   int width = 0, height = 0;  ///< of one picture or cell (pixels)
   std::filesystem::path folder;
   RenderStyle style = RenderStyle::particles;
+  double scale = 1;  ///< of text
+  bool walls = true;
+  std::optional<SectionView> section;
   int samples = 64;  ///< of each pixel of a ray-traced picture
   std::uint32_t seed = 0;
 };
@@ -74,6 +90,11 @@ class PictureTaker {
 
 /// By rays; `threads` as in CommonOptions. Throws MissingError where the program has none.
 std::unique_ptr<PictureTaker> makeStillTaker(const RenderJob& job, int threads);
+
+/// Carries out the events of a script at the window of the job's scene, without a display; pictures go into
+/// the job's folder. Throws InputError with the line of the event that is wrong or cannot be carried out.
+void runScript(const std::filesystem::path& script, const RenderJob& job, const RenderOptions& options,
+               const CommonOptions& common);
 
 // Films. An encoder makes them of the frames, a PNG each, in a folder beside the film that is gone
 // afterwards.

@@ -13,6 +13,7 @@
 #include "app/platform/context.h"
 #include "app/raytrace/embree.h"
 #include "app/render/image.h"
+#include "app/session/section_session.h"
 #include "app/viewer/viewer.h"
 #include "core/base/files.h"
 #include "core/base/hash.h"
@@ -37,8 +38,9 @@ struct PictureRecord {
   int iterations = 0;
   std::uint64_t stateHash = 0;
   std::vector<std::string> overrides;  ///< `/json/pointer=VALUE`, in order
+  std::vector<std::string> changes;    ///< `S:/json/pointer=VALUE`, in the order of their times
 };
-PictureRecord pictureRecord(const FrameView& frame, const std::vector<Override>& overrides);
+PictureRecord pictureRecord(const FrameView& frame, const RenderVariant& variant);
 
 /// What all cells of a picture file share.
 struct PictureContext {
@@ -67,10 +69,15 @@ namespace {
 /// By OpenGL, as the window does.
 class ViewerTaker final : public PictureTaker {
  public:
-  ViewerTaker(const Scene& scene, const WallDrawing& walls, const ViewerOptions& options,
-              const RenderJob& job, int threads)
-      : viewer_(scene, walls, options), job_(job), pool_(threads) {
+  ViewerTaker(const Scene& scene, const WallDrawing& walls, ViewerOptions options, const RenderJob& job,
+              int threads)
+      : viewer_(scene, walls, withSection(std::move(options))),
+        job_(job),
+        pool_(threads),
+        sections_(threads) {
     if (job.style == RenderStyle::water) surface_.emplace(scene, SurfaceOptions{}, pool_);
+    viewer_.view().walls = job.walls;
+    if (job.section) viewer_.view().section = *job.section;
   }
 
   Image take(const Simulation& simulation, const FrameView& frame) override {
@@ -78,15 +85,30 @@ class ViewerTaker final : public PictureTaker {
     if (surface_)
       shown.water =
           std::make_shared<const SurfaceMesh>(surface_->mesh(frame.positions, {}, simulation.time()));
+    if (job_.section) {
+      sections_.forget(section_);
+      for (int k = 0; k < 2; ++k) {  // asks, and takes in what is done
+        sections_.poll(section_, *job_.section, simulation.scene(), simulation.settings(), frame);
+        sections_.wait();
+      }
+      if (!section_.fault.empty()) throw InputError("--plane", section_.fault);
+    }
     return viewer_.takePicture(shown, RunStatus{}, job_.width, job_.height);
   }
   const Viewer& viewer() const { return viewer_; }
 
  private:
+  ViewerOptions withSection(ViewerOptions options) {
+    options.section = &section_;
+    return options;
+  }
+
+  SectionModel section_;
   Viewer viewer_;
   const RenderJob& job_;
   ThreadPool pool_;
   std::optional<SceneSurface> surface_;  ///< of water
+  SectionSession sections_;
 };
 
 /// What draws pictures of simulations.
@@ -109,7 +131,7 @@ class Drawing {
 
   std::unique_ptr<PictureTaker> makeTaker(const Simulation& simulation, const RenderVariant& variant) {
     if (job_.style == RenderStyle::rayTraced) return makeStillTaker(job_, common_.threads);
-    ViewerOptions shown{scaleFor(job_.width, job_.height), options_.panels, options_.timings, variant.note};
+    ViewerOptions shown{job_.scale, options_.panels, options_.timings, variant.note};
     shown.water = job_.style == RenderStyle::water;
     auto taker =
         std::make_unique<ViewerTaker>(simulation.scene(), simulation.walls(), shown, job_, common_.threads);
@@ -149,24 +171,24 @@ class DrawnRun {
     taker_ = drawing.makeTaker(simulation_, variant);
     progress_.emplace(0, drawing.job().times.back(), quiet);
     trouble_.look(simulation_.statistics(), *progress_);
+    const std::optional<SectionView>& section = drawing.job().section;
+    if (section && section->field == SectionField::pressure) simulation_.watchPressure(true);
   }
 
   /// Goes on to a time (s). False where the run has stopped before.
   bool reach(double time) {
-    const long frame = simulation_.frameAt(time);
-    while (simulation_.frame() < frame && !simulation_.stopped()) {
-      simulation_.advanceFrame();
-      trouble_.look(simulation_.statistics(), *progress_);
-      progress_->update(simulation_.time());
+    for (; next_ < variant_.later.size() && variant_.later[next_].time <= time; ++next_) {
+      advanceTo(variant_.later[next_].time);
+      simulation_.apply(variant_.later[next_].settings);
     }
-    return simulation_.frame() >= frame;
+    return advanceTo(time);
   }
 
   Image picture() {
     progress_->wipe();
     return taker_->take(simulation_, simulation_.drawnView());
   }
-  PictureRecord record() const { return pictureRecord(simulation_.view(), variant_.overrides); }
+  PictureRecord record() const { return pictureRecord(simulation_.view(), variant_); }
 
   /// Whether it went well; says so where it did not.
   bool finish() {
@@ -176,7 +198,22 @@ class DrawnRun {
   }
 
  private:
+  bool advanceTo(double time) {
+    // After a change of the time step, frames no longer begin at its multiples.
+    const auto isBefore = [&] {
+      return next_ == 0 ? simulation_.frame() < simulation_.frameAt(time)
+                        : simulation_.time() + 0.5 * simulation_.settings().solver.timeStep <= time;
+    };
+    while (isBefore() && !simulation_.stopped()) {
+      simulation_.advanceFrame();
+      trouble_.look(simulation_.statistics(), *progress_);
+      progress_->update(simulation_.time());
+    }
+    return !isBefore();
+  }
+
   const RenderVariant& variant_;
+  std::size_t next_ = 0;  ///< of the later settings
   std::string scene_;
   Simulation simulation_;
   std::unique_ptr<PictureTaker> taker_;
@@ -263,6 +300,11 @@ int render(const RenderOptions& options, const CommonOptions& common) {
   const RenderJob job = checkedRenderJob(options, common);
   if (job.style == RenderStyle::rayTraced && !raysAvailable())
     throw MissingError(std::string("--style raytraced: ") + raysMissingAdvice());
+  if (!options.script.empty()) {
+    makeFolder(job.folder, "--out");
+    runScript(options.script, job, options, common);
+    return kDone;
+  }
   Drawing drawing(job, options, common);
   bool good = false;
   if (job.film) {
@@ -310,13 +352,15 @@ Json json(const PictureContext& context, const Image& image) {
 }
 
 Json json(const PictureRecord& record) {
-  return {{"overrides", record.overrides},
-          {"time", roundedTime(record.time)},
-          {"steps", record.steps},
-          {"particles", record.particles},
-          {"handling", record.handling},
-          {"iterations", record.iterations},
-          {"state_hash", hexDigits(record.stateHash)}};
+  Json all{{"overrides", record.overrides},
+           {"time", roundedTime(record.time)},
+           {"steps", record.steps},
+           {"particles", record.particles},
+           {"handling", record.handling},
+           {"iterations", record.iterations},
+           {"state_hash", hexDigits(record.stateHash)}};
+  if (!record.changes.empty()) all["changes"] = record.changes;
+  return all;
 }
 
 void write(const std::filesystem::path& file, const Image& image, const Json& sidecar) {
@@ -328,11 +372,14 @@ void write(const std::filesystem::path& file, const Image& image, const Json& si
 
 }  // namespace
 
-PictureRecord pictureRecord(const FrameView& frame, const std::vector<Override>& overrides) {
+PictureRecord pictureRecord(const FrameView& frame, const RenderVariant& variant) {
   const FrameInfo& info = frame.info;
-  PictureRecord record{info.time,      info.steps, frame.positions.size(), info.handling, info.iterations,
-                       info.stateHash, {}};
-  for (const Override& change : overrides) record.overrides.push_back(change.pointer + "=" + change.value);
+  PictureRecord record{
+      info.time, info.steps, frame.positions.size(), info.handling, info.iterations, info.stateHash, {}, {}};
+  for (const Override& change : variant.overrides)
+    record.overrides.push_back(change.pointer + "=" + change.value);
+  for (const LaterSettings& change : variant.later)
+    if (change.time <= info.time) record.changes.push_back(change.words);
   return record;
 }
 

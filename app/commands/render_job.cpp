@@ -1,14 +1,19 @@
 // What `migiwa render` was asked for, looked at and understood before anything is drawn or written.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "app/commands/command.h"
 #include "app/commands/pictures.h"
+#include "app/session/section_session.h"
+#include "app/viewer/viewer.h"
 #include "core/base/files.h"
 #include "core/base/messages.h"
 #include "core/scene/scene.h"
@@ -55,6 +60,10 @@ void requireStyle(const RenderOptions& options, RenderJob& job) {
   };
   refuse(rayTraced && options.panels, "--ui", "particles or water");
   refuse(rayTraced && options.timings, "--timings", "particles or water");
+  refuse(rayTraced && options.scale.has_value(), "--scale", "particles or water");
+  refuse(rayTraced && options.hideWalls, "--hide-walls", "particles or water");
+  refuse(rayTraced && !options.section.plane.empty(), "--plane", "particles or water");
+  refuse(rayTraced && !options.section.normal.empty(), "--normal", "particles or water");
   refuse(!rayTraced && options.samples.has_value(), "--samples", "raytraced");
   refuse(!rayTraced && options.seed.has_value(), "--seed", "raytraced");
   collect.raise();
@@ -71,6 +80,11 @@ void requirePlace(const RenderOptions& options) {
   beside(!film && options.out.empty(), "--out",
          "expected a folder for the pictures, or --film with a file, found neither");
   beside(film && !options.times.empty(), "--times", "expected --from and --to beside --film, found --times");
+  const bool script = !options.script.empty();
+  beside(script && !options.panels, "--script", "expected --ui beside it, found none");
+  beside(script && film, "--script", "expected it or --film, found both");
+  beside(script && !options.times.empty(), "--script", "expected \"play_to\" in it in place of --times");
+  beside(script && !options.compare.empty(), "--script", "expected it or --compare, found both");
   beside(!film && options.fps.has_value(), "--fps", "expected --film beside it, found none");
   beside(!film && options.from.has_value(), "--from", "expected --film beside it, found none");
   beside(!film && options.to.has_value(), "--to", "expected --film beside it, found none");
@@ -133,6 +147,75 @@ void requireSheet(const RenderJob& job, std::size_t rows, std::size_t columns) {
   requireMemory(kBytesOfPixel * width * height, "a sheet", "--compare");
 }
 
+/// "S:/POINTER=VALUE".
+std::pair<double, Override> laterChange(const std::string& words) {
+  const std::size_t colon = words.find(':');
+  std::array<double, 1> time{};
+  if (colon == std::string::npos || !readNumbers(std::string_view(words).substr(0, colon), time))
+    throw InputError("--set-at",
+                     "expected a time in s, a colon and a change such as 0.5:/solver/tolerance=0.01, "
+                     "found \"" +
+                         words + "\"");
+  requireNumber("--set-at", time[0], Range::closed(0, kLongestRun), "s");
+  return {time[0], Override::parse(std::string_view(words).substr(colon + 1))};
+}
+
+/// Each with all that was changed before it.
+std::vector<LaterSettings> laterSettings(const RenderOptions& options, const RenderVariant& variant) {
+  FaultCollector collect;
+  std::vector<std::pair<double, Override>> changes;
+  for (const std::string& words : options.changes) collect([&] { changes.push_back(laterChange(words)); });
+  collect.raise();
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<LaterSettings> later;
+  std::vector<Override> overrides = variant.overrides;
+  const std::string start = startOf(variant.scene);
+  for (const auto& [time, change] : changes) {
+    overrides.push_back(change);
+    const Scene scene = readScene(options.scene, overrides);
+    if (startOf(scene) != start)
+      throw InputError("--set-at",
+                       "expected a setting that can change while a run goes on, of the solver, of an effect "
+                       "or of how walls are handled, found " +
+                           change.pointer);
+    requireSteppable(scene.boundary, scene.file);
+    later.push_back({time,
+                     {scene.solver, scene.boundary, scene.effects},
+                     formatNumber("%g", time) + ":" + change.pointer + "=" + change.value});
+  }
+  return later;
+}
+
+/// What is drawn of a section; nothing where no plane was given.
+std::optional<SectionView> sectionOf(const RenderOptions& options, const Scene& scene) {
+  const bool given = !options.section.plane.empty() || !options.section.normal.empty();
+  FaultCollector collect;
+  const auto alone = [&](bool there, const char* option) {
+    if (there && !given) collect.add({option, "expected --plane or --normal beside it, found neither"});
+  };
+  alone(options.section.offset.has_value(), "--offset");
+  alone(options.section.field != kSectionFieldNames[0], "--field");
+  alone(options.section.divisor != kSectionDivisorNames[0], "--divisor");
+  alone(options.noCut, "--no-cut");
+  alone(options.noLines, "--no-lines");
+  alone(options.fit, "--fit");
+  SectionView section{.shown = true, .cut = !options.noCut, .lines = !options.noLines, .fit = options.fit};
+  collect([&] { section.field = fieldOf(options.section); });
+  collect([&] { section.divisor = divisorOf(options.section); });
+  collect.raise();
+  if (!given) return std::nullopt;
+  const Cut cut = cutOf(options.section, scene);
+  section.free = options.section.plane.empty();
+  if (section.free)
+    section.normal = cut.normal;
+  else
+    section.axis = static_cast<Axis>(std::string_view("xyz").find(options.section.plane[0]));
+  section.at = cut.offset - cut.normal.dot(scene.origin);
+  if (!planeOf(section, scene)) refusePlane(options.section, cut, scene);
+  return section;
+}
+
 }  // namespace
 
 RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& common) {
@@ -165,6 +248,7 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
       Scene scene = readScene(options.scene, overrides);
       requireSteppable(scene.boundary, scene.file);
       job.variants.push_back({overrides, itsNote, std::move(scene)});
+      job.variants.back().later = laterSettings(options, job.variants.back());
       if (!job.times.empty()) requireReachable(job.variants.back().scene, job.times.back(), "--times");
       if (options.to) requireReachable(job.variants.back().scene, *options.to, "--to");
     });
@@ -184,6 +268,10 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
     // Not even the option could be read: then the scene itself is still to be looked at.
     if (changes.empty()) addVariant(common.overrides, "");
   }
+  if (!job.variants.empty()) collect([&] { job.section = sectionOf(options, job.variants.front().scene); });
+  job.walls = !options.hideWalls;
+  job.scale = options.scale.value_or(scaleFor(job.width, job.height));
+  if (options.scale) collect([&] { requireNumber("--scale", job.scale, Range::closed(0.5, 8), "1"); });
   if (job.film && !job.variants.empty())
     collect(
         [&] { job.times = filmTimes(*job.film, options.to.value_or(job.variants.front().scene.duration)); });
@@ -197,8 +285,8 @@ RenderJob checkedRenderJob(const RenderOptions& options, const CommonOptions& co
 }
 
 std::vector<Option> renderOptions(RenderOptions& options) {
-  const std::string film = "Films";
-  return {
+  const std::string film = "Films", section = "A section";
+  std::vector<Option> all{
       {.name = "scene", .target = &options.scene, .value = "SCENE", .help = "Scene file.", .required = true},
       {.name = "--out",
        .target = &options.out,
@@ -232,9 +320,25 @@ std::vector<Option> renderOptions(RenderOptions& options) {
        .range = {{0, 4294967295}},
        .shownDefault = "0"},
       {.name = "--ui", .target = &options.panels, .help = "Draws the window's panels, too."},
+      {.name = "--script",
+       .target = &options.script,
+       .value = "FILE",
+       .help = "With --ui: a list of events at the window, as docs/window.md has them, and pictures of it, "
+               "which go "
+               "into --out."},
       {.name = "--timings",
        .target = &options.timings,
        .help = "Shows wall times; without it two runs give the same bytes."},
+      {.name = "--scale",
+       .target = &options.scale,
+       .value = "X",
+       .help = "Size of text; left out: as suits the picture, 1 where it is 720 pixels high."},
+      {.name = "--hide-walls", .target = &options.hideWalls, .help = "Draws no walls."},
+      {.name = "--set-at",
+       .target = &options.changes,
+       .value = "S:/POINTER=VALUE",
+       .help = "Changes a setting at a time of the run, in s, as --set does at its start. Repeatable.",
+       .oneValueEach = true},
       {.name = "--compare",
        .target = &options.compare,
        .value = "/POINTER=A,B,...",
@@ -262,6 +366,20 @@ std::vector<Option> renderOptions(RenderOptions& options) {
        .value = "S",
        .help = "Simulated time of the last frame, in s; left out: the scene's duration.",
        .group = film}};
+  for (Option& option : planeOptions(options.section, section)) all.push_back(std::move(option));
+  all.push_back({.name = "--no-cut",
+                 .target = &options.noCut,
+                 .help = "Leaves what lies before the section.",
+                 .group = section});
+  all.push_back({.name = "--no-lines",
+                 .target = &options.noLines,
+                 .help = "Draws no lines of equal values on it.",
+                 .group = section});
+  all.push_back({.name = "--fit",
+                 .target = &options.fit,
+                 .help = "Its colours reach from the least to the largest value that there is.",
+                 .group = section});
+  return all;
 }
 
 }  // namespace migiwa

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "app/commands/command.h"
+#include "app/commands/plane.h"
 #include "app/commands/plots.h"
 #include "app/render/image.h"
 #include "app/viewer/viewer.h"
@@ -22,72 +23,14 @@ namespace migiwa {
 namespace {
 
 struct SectionOptions {
-  std::string scene, plane, normal, field{kSectionFieldNames[0]}, divisor{kSectionDivisorNames[0]}, csv, png;
-  std::optional<double> offset, time;
+  PlaneWords what;
+  std::string scene, csv, png;
+  std::optional<double> time;
   std::optional<int> cells;
 };
 
 constexpr int kCellsAcross = 512, kFewestCells = 2, kMostCells = 4096;
 constexpr int kErrorCells = 128;  ///< of the error of gamma, which takes long
-
-/// A plane in the coordinates of the scene's file, and how it is called.
-struct Cut {
-  Vec3d normal = Vec3d::UnitZ();
-  double offset = 0;  ///< along the unit normal (m)
-  std::string name;
-};
-
-/// Significant digits that tell places of a scene apart, however far from zero it is.
-int placeDigits(const Scene& scene) {
-  const Bounds bounds = scene.bounds();
-  const double size = bounds.size().maxCoeff(), far = (bounds.center() + scene.origin).cwiseAbs().maxCoeff();
-  return size > 0 && far > size ? std::min(6 + static_cast<int>(std::ceil(std::log10(far / size))), 15) : 6;
-}
-
-/// "(0.71, 0.71, 0)", with so many decimals at most and no zero below zero.
-std::string directionText(const Vec3d& direction, int decimals) {
-  const double unit = std::pow(10, decimals);
-  std::string text;
-  for (const double part : direction)
-    text += (text.empty() ? "(" : ", ") + formatNumber("%g", std::round(part * unit) / unit + 0.0);
-  return text + ")";
-}
-
-Cut cutOf(const SectionOptions& options, const Scene& scene) {
-  Cut cut;
-  std::ostringstream name;
-  name.precision(placeDigits(scene));
-  if (!options.normal.empty()) {
-    std::array<double, 3> normal{};
-    const bool valid = readNumbers(options.normal, normal);
-    cut.normal = Vec3d(normal[0], normal[1], normal[2]);
-    if (!valid || !(cut.normal.norm() > 1e-9))
-      throw InputError("--normal", "expected X,Y,Z of some length, found \"" + options.normal + "\"");
-    cut.normal.normalize();
-    cut.offset = options.offset ? *options.offset : cut.normal.dot(scene.bounds().center() + scene.origin);
-    name << directionText(cut.normal, 6) << " · x = " << cut.offset << " m";
-    cut.name = name.str();
-    return cut;
-  }
-  if (options.offset) throw InputError("--offset", "expected --normal beside it, found none");
-  std::size_t axis = static_cast<std::size_t>(scene.view.clip.axis);
-  std::array<double, 1> at{};
-  if (options.plane.empty()) {
-    const auto k = static_cast<Eigen::Index>(axis);
-    at[0] = scene.origin[k] + (scene.view.clip.enabled ? scene.view.clip.at : scene.bounds().center()[k]);
-  } else {
-    axis = std::min<std::size_t>(std::string_view("xyz").find(options.plane[0]), 3);
-    if (axis == 3 || options.plane.size() < 3 || options.plane[1] != '=' ||
-        !readNumbers(std::string_view(options.plane).substr(2), at))
-      throw InputError("--plane", "expected an axis and a place on it in m such as x=0.5, found \"" +
-                                      options.plane + "\"");
-  }
-  cut.normal = Vec3d::Unit(static_cast<Eigen::Index>(axis));
-  cut.offset = at[0];
-  name << "xyz"[axis] << " = " << at[0] << " m";
-  cut.name = name.str();
-  return cut;
-}
 
 struct SectionJob {
   Cut cut;
@@ -109,13 +52,8 @@ bool isOneFile(const std::string& a, const std::string& b) {
 SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
   SectionJob job;
   FaultCollector collect;
-  collect([&] {
-    job.field = static_cast<SectionField>(requireOneOf("--field", options.field, kSectionFieldNames));
-  });
-  collect([&] {
-    job.divisor =
-        static_cast<SectionDivisor>(requireOneOf("--divisor", options.divisor, kSectionDivisorNames));
-  });
+  collect([&] { job.field = fieldOf(options.what); });
+  collect([&] { job.divisor = divisorOf(options.what); });
   collect([&] {
     if (options.csv.empty() && options.png.empty())
       throw InputError("section", "expected --csv FILE or --png FILE, found neither");
@@ -137,22 +75,13 @@ SectionJob checkedJob(const SectionOptions& options, const Scene& scene) {
   collect([&] {
     if (scene.bounds().empty())
       throw InputError(options.scene, "expected fluid or walls of some extent to cut through, found neither");
-    job.cut = cutOf(options, scene);
+    job.cut = cutOf(options.what, scene);
     const int cells =
         options.cells.value_or(job.field == SectionField::gammaError ? kErrorCells : kCellsAcross);
     const Vec3d up = scene.gravity.norm() > 0 ? Vec3d(-scene.gravity) : scene.view.camera.up;
     const auto plane = sectionPlane(job.cut.normal, job.cut.offset - job.cut.normal.dot(scene.origin),
                                     scene.bounds(), up, cells);
-    if (!plane) {
-      const Bounds bounds = scene.bounds();
-      std::ostringstream text;
-      text.precision(placeDigits(scene));
-      const Eigen::IOFormat plain(Eigen::StreamPrecision, Eigen::DontAlignCols);
-      text << "expected a plane that meets the scene, which reaches from ("
-           << (bounds.min + scene.origin).transpose().format(plain) << ") to ("
-           << (bounds.max + scene.origin).transpose().format(plain) << ") m, found " << job.cut.name;
-      throw InputError(options.normal.empty() ? "--plane" : "--offset", text.str());
-    }
+    if (!plane) refusePlane(options.what, job.cut, scene);
     job.plane = *plane;
   });
   collect.raise();
@@ -313,54 +242,33 @@ int runSection(const SectionOptions& options, const CommonOptions& common) {
 }
 
 std::vector<Option> sectionOptions(SectionOptions& options) {
-  return {
-      {.name = "scene",
-       .target = &options.scene,
-       .value = "SCENE",
-       .help = "The scene file.",
-       .required = true},
-      {.name = "--time",
-       .target = &options.time,
-       .value = "S",
-       .help = "Simulated time, in s.",
-       .shownDefault = "0"},
-      {.name = "--plane",
-       .target = &options.plane,
-       .value = "AXIS=M",
-       .help = "Such as x=0.5, in m; left out: the scene's cut, or its middle."},
-      {.name = "--normal",
-       .target = &options.normal,
-       .value = "X,Y,Z",
-       .help = "A plane at an angle, by its normal, instead.",
-       .excludes = {"--plane"}},
-      {.name = "--offset",
-       .target = &options.offset,
-       .value = "M",
-       .help = "How far along the unit normal it lies from the origin, in m; left out: through the middle."},
-      {.name = "--field",
-       .target = &options.field,
-       .value = "NAME",
-       .help = "density, pressure, speed, gamma, or gamma_error: gamma less its reference.",
-       .shownDefault = "density"},
-      {.name = "--divisor",
-       .target = &options.divisor,
-       .value = "sum|gamma|none",
-       .help = "What the sum over the particles is divided by: the sum of the kernel, gamma, or nothing.",
-       .shownDefault = "sum"},
-      {.name = "--cells",
-       .target = &options.cells,
-       .value = "N",
-       .help = "Along the longer side; of gamma_error 128, for it takes long.",
-       .range = {{kFewestCells, kMostCells}},
-       .shownDefault = std::to_string(kCellsAcross)},
-      {.name = "--csv",
-       .target = &options.csv,
-       .value = "FILE",
-       .help = "Writes the cells of the liquid as x,y,z,value."},
-      {.name = "--png",
-       .target = &options.png,
-       .value = "FILE",
-       .help = "Draws them with lines of equal values."}};
+  std::vector<Option> all{{.name = "scene",
+                           .target = &options.scene,
+                           .value = "SCENE",
+                           .help = "The scene file.",
+                           .required = true},
+                          {.name = "--time",
+                           .target = &options.time,
+                           .value = "S",
+                           .help = "Simulated time, in s.",
+                           .shownDefault = "0"}};
+  for (Option& option : planeOptions(options.what, "")) all.push_back(std::move(option));
+  const std::vector<Option> more{{.name = "--cells",
+                                  .target = &options.cells,
+                                  .value = "N",
+                                  .help = "Along the longer side; of gamma_error 128, for it takes long.",
+                                  .range = {{kFewestCells, kMostCells}},
+                                  .shownDefault = std::to_string(kCellsAcross)},
+                                 {.name = "--csv",
+                                  .target = &options.csv,
+                                  .value = "FILE",
+                                  .help = "Writes the cells of the liquid as x,y,z,value."},
+                                 {.name = "--png",
+                                  .target = &options.png,
+                                  .value = "FILE",
+                                  .help = "Draws them with lines of equal values."}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,6 +43,7 @@ enum class Key {
   enter,
   escape,
   space,
+  f1,
   a,
   c,
   h,
@@ -72,6 +74,12 @@ struct InputState {
   bool down(Key key) const { return keys[static_cast<std::size_t>(key)]; }
 };
 
+/// Where text is copied to and pasted from.
+struct Clipboard {
+  std::function<void(const std::string&)> set;
+  std::function<std::string()> get;
+};
+
 // A window with an OpenGL 4.5 core context.
 
 class GlfwWindow final : public GlContext {
@@ -96,6 +104,8 @@ class GlfwWindow final : public GlContext {
   double contentScale() const;
   /// Shows what was drawn.
   void swap();
+  /// That of the desktop; lasts no longer than the window.
+  Clipboard clipboard() const;
 
  private:
   struct State;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::array<int, kKeyCount> kGlfwKeys{
     GLFW_KEY_TAB,   GLFW_KEY_LEFT,   GLFW_KEY_RIGHT,  GLFW_KEY_UP,        GLFW_KEY_DOWN,  GLFW_KEY_HOME,
     GLFW_KEY_END,   GLFW_KEY_INSERT, GLFW_KEY_DELETE, GLFW_KEY_BACKSPACE, GLFW_KEY_ENTER, GLFW_KEY_ESCAPE,
-    GLFW_KEY_SPACE, GLFW_KEY_A,      GLFW_KEY_C,      GLFW_KEY_H,         GLFW_KEY_P,     GLFW_KEY_R,
-    GLFW_KEY_V,     GLFW_KEY_X,      GLFW_KEY_Y,      GLFW_KEY_Z};
+    GLFW_KEY_SPACE, GLFW_KEY_F1,     GLFW_KEY_A,      GLFW_KEY_C,         GLFW_KEY_H,     GLFW_KEY_P,
+    GLFW_KEY_R,     GLFW_KEY_V,      GLFW_KEY_X,      GLFW_KEY_Y,         GLFW_KEY_Z};
 constexpr std::array<int, kMouseButtonCount> kGlfwButtons{GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT,
                                                           GLFW_MOUSE_BUTTON_MIDDLE};
 
@@ -190,6 +190,15 @@ double GlfwWindow::contentScale() const {
 
 void GlfwWindow::swap() {
   glfwSwapBuffers(state_->window);
+}
+
+Clipboard GlfwWindow::clipboard() const {
+  GLFWwindow* const window = state_->window;
+  return {[window](const std::string& text) { glfwSetClipboardString(window, text.c_str()); },
+          [window] {
+            const char* const text = glfwGetClipboardString(window);
+            return std::string(text != nullptr ? text : "");
+          }};
 }
 
 }  // namespace migiwa

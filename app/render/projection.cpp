@@ -41,6 +41,16 @@ Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHei
   return {view.cast<float>(), clip.cast<float>(), near, far};
 }
 
+std::optional<std::array<float, 2>> pixelOf(const Vec3f& place, const Projection& projection,
+                                            const Rect& scene) {
+  const Eigen::Vector4f clip =
+      projection.clip * (projection.view * Eigen::Vector4f(place.x(), place.y(), place.z(), 1));
+  if (!(clip.w() > static_cast<float>(projection.near))) return std::nullopt;
+  return {
+      {static_cast<float>(scene.x) + 0.5F * (1 + clip.x() / clip.w()) * static_cast<float>(scene.width),
+       static_cast<float>(scene.y) + 0.5F * (1 - clip.y() / clip.w()) * static_cast<float>(scene.height)}};
+}
+
 namespace {
 
 constexpr double kClosest = 1e-3, kFarthest = 1e5;

@@ -1,6 +1,10 @@
 // The camera: its projection onto the picture, and how the mouse moves it.
 #pragma once
 
+#include <array>
+#include <optional>
+
+#include "core/base/math.h"
 #include "core/scene/scene.h"
 
 namespace migiwa {
@@ -26,6 +30,10 @@ Vec3d cameraRight(const Camera& camera);
 /// The camera's vertical field of view holds for the whole picture. Where panels leave only `scene` of it,
 /// everything is drawn smaller, so that it still shows what the whole picture would.
 Projection makeProjection(const Camera& camera, int pictureWidth, int pictureHeight, const Rect& scene);
+
+/// Where a place (m) is in the picture (pixels); nothing where it lies before the depth range.
+std::optional<std::array<float, 2>> pixelOf(const Vec3f& place, const Projection& projection,
+                                            const Rect& scene);
 
 // What dragging and scrolling do to a camera. Lengths are metres, angles radians.
 

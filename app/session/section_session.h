@@ -30,6 +30,7 @@ class SectionSession {
             const FrameView& frame);
   /// Another scene takes the place of this one.
   void forget(SectionModel& model);
+  bool busy() const { return asking_.valid(); }
   /// Waits for what is under way.
   void wait() const;
 

@@ -59,7 +59,7 @@ void TimeLine::changed(Simulation& simulation, const Settings& before) {
   Branch& branch = branches_.at(branch_);
   if (frame < branch.last) {
     Branch begun = branchFrom(simulation, nameOf(simulation, before), branch_, before);
-    begun.changes[frame] = simulation.settings();
+    begun.changes[frame] = {simulation.time(), simulation.settings()};
     const std::size_t bytes = begun.moments.begin()->second.bytes;
     branches_.emplace(newest_ + 1, std::move(begun));
     // From here on nothing fails.
@@ -71,13 +71,13 @@ void TimeLine::changed(Simulation& simulation, const Settings& before) {
     return;
   }
   if (frame == branch.first && branch.parent != 0) branch.name = nameOf(simulation, branch.settings);
-  branch.changes[frame] = simulation.settings();
+  branch.changes[frame] = {simulation.time(), simulation.settings()};
 }
 
 const Settings* TimeLine::changeAt(long frame) const {
   const auto& changes = branches_.at(branch_).changes;
   const auto found = changes.find(frame);
-  return found == changes.end() ? nullptr : &found->second;
+  return found == changes.end() ? nullptr : &found->second.settings;
 }
 
 std::optional<int> TimeLine::parent(int branch) const {
@@ -94,7 +94,7 @@ TimeLine::Origin TimeLine::origin(int branch, std::optional<long> frame, double 
   }
   const Settings* settings = &from.settings;
   for (const auto& [at, changed] : from.changes)
-    if (at < moment->first) settings = &changed;
+    if (at < moment->first) settings = &changed.settings;
   return {moment->second.image, *settings, moment->first};
 }
 
@@ -105,7 +105,7 @@ long TimeLine::frameAt(int branch, double time) const {
   double now = in.moments.at(frame).time, step = from.settings.solver.timeStep;
   for (; frame < in.last; ++frame) {
     if (const auto changed = in.changes.find(frame); changed != in.changes.end())
-      step = changed->second.solver.timeStep;
+      step = changed->second.settings.solver.timeStep;
     if (now + 0.5 * step > time) break;
     now += step;
   }
@@ -118,6 +118,7 @@ TimeLineView TimeLine::view(const Simulation& simulation) const {
   view.frame = simulation.frame();
   view.time = simulation.time();
   view.bytes = bytes_;
+  tellHistory(simulation, view);
   for (const auto& [number, branch] : branches_) {
     TimeLineView::Branch& shown = view.branches.emplace_back();
     shown.number = number;
@@ -127,6 +128,24 @@ TimeLineView TimeLine::view(const Simulation& simulation) const {
     for (const auto& [frame, moment] : branch.moments) shown.kept.push_back(moment.time);
   }
   return view;
+}
+
+/// From the present branch back to the run's start.
+void TimeLine::tellHistory(const Simulation& simulation, TimeLineView& view) const {
+  long until = simulation.frame();  // a change at this frame counts
+  std::vector<TimeLineView::Change> latestFirst;
+  const Branch* branch = &branches_.at(branch_);
+  while (true) {
+    for (auto change = branch->changes.rbegin(); change != branch->changes.rend(); ++change)
+      if (change->first <= until) latestFirst.push_back(change->second);
+    const auto parent = branches_.find(branch->parent);
+    if (parent == branches_.end()) break;
+    until = branch->first - 1;
+    branch = &parent->second;
+  }
+  view.historyIsWhole = branch->parent == 0 && branch->first == 0;
+  view.history.push_back({branch->moments.begin()->second.time, branch->settings});
+  view.history.insert(view.history.end(), latestFirst.rbegin(), latestFirst.rend());
 }
 
 TimeLine::Moment TimeLine::momentOf(Simulation& simulation) {

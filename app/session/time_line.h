@@ -76,11 +76,12 @@ class TimeLine {
     long first = 0, last = 0;  ///< frames
     double end = 0;            ///< time of the last one (s)
     Settings settings;         ///< with which it came to its first frame
-    std::map<long, Settings> changes;
+    std::map<long, TimeLineView::Change> changes;
     std::map<long, Moment> moments;  ///< the first frame's is always there
   };
 
   static Moment momentOf(Simulation& simulation);
+  void tellHistory(const Simulation& simulation, TimeLineView& view) const;
   static Branch branchFrom(Simulation& simulation, std::string name, int parent, const Settings& settings);
   void fitLimit();
   bool thin();

@@ -37,6 +37,13 @@ struct TimeLineView {
   double time = 0;        ///< (s)
   bool underWay = false;  ///< on its way to another time
   std::size_t bytes = 0;  ///< that the states take
+  /// Settings that came into force on the way to where the run is.
+  struct Change {
+    double time = 0;  ///< (s)
+    Settings settings;
+  };
+  std::vector<Change> history;  ///< the first are those of the start
+  bool historyIsWhole = true;   ///< it begins with the scene
 
   const Branch* present() const {
     for (const Branch& one : branches)
@@ -105,9 +112,11 @@ struct UiCommands {
   bool stepBack = false;
   std::optional<TimePlace> goTo;
   bool settings = false;  ///< the settings were changed
-  bool savePicture = false, saveSection = false;
+  bool savePicture = false, saveSection = false, saveParticles = false;
   bool saveState = false, loadState = false;
-  int undo = 0;  ///< so many changes are taken back; below 0: done again
+  bool copyCommand = false;
+  bool listKeys = false;  ///< the list of keys is to be shown, or hidden
+  int undo = 0;           ///< so many changes are taken back; below 0: done again
 };
 
 // "Looking in": one particle, its neighbours, and what walls take of its support.
@@ -156,6 +165,43 @@ struct SectionModel {
   std::optional<Vec3d> pointed;                 ///< place on it under the mouse (m)
 };
 
+// Particles that were selected, and how a field is spread over them.
+
+/// What a particle has that can be counted and listed.
+enum class ParticleValue { density, pressure, speed, gamma, x, y, z, vx, vy, vz, lambda, neighbours };
+inline constexpr std::array<std::string_view, 12> kParticleValueNames{
+    "density", "pressure", "speed", "gamma", "x", "y", "z", "vx", "vy", "vz", "lambda", "neighbours"};
+
+/// Of a field over particles; deviation is that of all of them, not of a sample.
+struct FieldSpread {
+  static constexpr std::size_t kBins = 32;
+
+  std::size_t count = 0;
+  double least = 0, largest = 0, mean = 0, deviation = 0;
+  /// From the least to the largest value, all of one width.
+  std::array<std::size_t, kBins> bins{};
+};
+
+struct SelectionModel {
+  std::vector<std::uint32_t> ids;                 ///< that are selected, in rising order; none: all count
+  bool tool = false;                              ///< the next drag over the picture selects
+  std::optional<std::array<float, 4>> rectangle;  ///< that is being drawn: left, top, right, bottom (pixels)
+  ParticleValue field = ParticleValue::density;
+  std::string fileName = "particles.csv";
+  std::string note{};                 ///< one line on what became of the last table
+  bool shown = false;                 ///< its panel was open in the last frame
+  std::size_t all = 0;                ///< particles in the frame
+  std::optional<FieldSpread> spread;  ///< of those of `ids` that are still there; nothing: not known
+};
+
+/// The command line that reproduces what is seen.
+struct CommandModel {
+  std::string text;
+  std::vector<std::string> lacks;  ///< what it does not reproduce, a line each
+  bool open = false;
+  bool copy = false;  ///< it is to be put on the clipboard; cleared by whoever does it
+};
+
 // The gallery: what can be opened.
 
 struct GalleryEntry {
@@ -185,10 +231,12 @@ struct PanelModel {
   ViewState& view;
   bool hasNodes;  ///< some wall has nodes to show
   UiCommands& commands;
-  SceneEditor* editor;    ///< null: the scene's text is not offered
-  WhatIfModel* whatIf;    ///< null: not offered
-  GalleryModel* gallery;  ///< null: not offered
-  SectionModel* section;  ///< null: not offered
+  SceneEditor* editor;        ///< null: the scene's text is not offered
+  WhatIfModel* whatIf;        ///< null: not offered
+  GalleryModel* gallery;      ///< null: not offered
+  SectionModel* section;      ///< null: not offered
+  CommandModel* command;      ///< null: not offered
+  SelectionModel* selection;  ///< null: not offered
   const StageHistory& history;
   const UndoHistory& undo;
 };

@@ -27,8 +27,7 @@ constexpr float kCardWidth = 20;  // over the height of the text
 /// World to pixels.
 class Sight {
  public:
-  Sight(const Projection& projection, const Rect& area)
-      : matrix_(projection.clip * projection.view), near_(static_cast<float>(projection.near)), area_(area) {
+  Sight(const Projection& projection, const Rect& area) : projection_(projection), area_(area) {
     const Mat4f inverse = projection.view.inverse();
     eye_ = inverse.block<3, 1>(0, 3);
     const Vec3f right = inverse.block<3, 1>(0, 0);
@@ -37,11 +36,8 @@ class Sight {
 
   const Vec3f& eye() const { return eye_; }
   std::optional<ImVec2> at(const Vec3f& p) const {
-    const Eigen::Vector4f clip = matrix_ * Eigen::Vector4f(p.x(), p.y(), p.z(), 1);
-    if (!(clip.w() > near_)) return std::nullopt;
-    return ImVec2{
-        static_cast<float>(area_.x) + 0.5F * (1 + clip.x() / clip.w()) * static_cast<float>(area_.width),
-        static_cast<float>(area_.y) + 0.5F * (1 - clip.y() / clip.w()) * static_cast<float>(area_.height)};
+    const auto pixel = pixelOf(p, projection_, area_);
+    return pixel ? std::optional(ImVec2{(*pixel)[0], (*pixel)[1]}) : std::nullopt;
   }
   /// Of a sphere about p in the picture (pixels).
   float radius(const Vec3f& p, float radius) const {
@@ -50,8 +46,7 @@ class Sight {
   }
 
  private:
-  Mat4f matrix_;
-  float near_;
+  Projection projection_;
   Rect area_;
   Vec3f eye_, right_;
 };

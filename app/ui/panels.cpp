@@ -70,6 +70,9 @@ void scenePanel(PanelModel& model) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("All shipped scenes, the last opened ones, any other file");
     ImGui::SameLine();
   }
+  if (ImGui::Button("?")) model.commands.listKeys = true;
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("What keys and the mouse do");
+  ImGui::SameLine();
   faintText(editor.fileName);
   if (editor.faults.empty()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
@@ -233,6 +236,10 @@ void viewPanel(PanelModel& model) {
   if (ImGui::Button("Reset camera", {width, 0})) view.camera = model.scene.view.camera;
   ImGui::SameLine();
   if (ImGui::Button("Save picture", {width, 0})) model.commands.savePicture = true;
+  if (model.command == nullptr) return;
+  if (ImGui::Button("Copy as command", {width, 0})) model.commands.copyCommand = true;
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("The command line that draws what is seen here, without a window");
 }
 
 // The panel of an effect, made from what the effect says of its parameters. Effects are shared and never

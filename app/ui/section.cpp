@@ -87,17 +87,19 @@ void sectionPanel(PanelModel& model) {
   ImGui::EndDisabled();
   ImGui::EndDisabled();
   if (!view.shown) return;
-  ImGui::SameLine();
-  ImGui::AlignTextToFramePadding();
+  const auto beside = [](const std::string& note) {
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    faintText(note);
+  };
   if (!section.fault.empty()) {
-    ImGui::NewLine();
     ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
     ImGui::TextWrapped("%s", section.fault.c_str());
     ImGui::PopStyleColor();
   } else if (!section.raster) {
-    faintText("being worked out ...");
+    beside("being worked out ...");
   } else if (section.time != model.frame.time) {
-    faintText(formatNumber("as at %.3f s", section.time));
+    beside(formatNumber("as at %.3f s", section.time));
   }
 }
 

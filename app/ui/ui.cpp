@@ -108,6 +108,8 @@ struct Ui::State {
   ImGuiContext* context = ImGui::CreateContext();
   Fonts fonts;
   float pixels = kFontPixels;
+  Clipboard clipboard;
+  std::string pasted;  ///< ImGui keeps a pointer to it
 
   State() { ImGui::SetCurrentContext(context); }
   ~State() { ImGui::DestroyContext(context); }
@@ -115,13 +117,25 @@ struct Ui::State {
   State& operator=(const State&) = delete;
 };
 
-Ui::Ui(double scale) : state_(std::make_unique<State>()) {
+Ui::Ui(double scale, Clipboard clipboard) : state_(std::make_unique<State>()) {
   state_->pixels = std::floor(kFontPixels * static_cast<float>(scale) + 0.25F);
   state_->fonts = loadFonts(state_->pixels);
   applyTheme(state_->pixels);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   prepareInput(io);
+  if (clipboard.set && clipboard.get) {
+    state_->clipboard = std::move(clipboard);
+    io.ClipboardUserData = state_.get();
+    io.SetClipboardTextFn = [](void* state, const char* text) {
+      static_cast<State*>(state)->clipboard.set(text);
+    };
+    io.GetClipboardTextFn = [](void* state) {
+      auto& own = *static_cast<State*>(state);
+      own.pasted = own.clipboard.get();
+      return own.pasted.c_str();
+    };
+  }
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 
@@ -150,6 +164,7 @@ void Ui::begin(int width, int height, const InputState& input) {
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   feed(io, input);
   ImGui::NewFrame();
+  forgetRows();
 }
 
 void Ui::panels(PanelModel& model, int height) {
@@ -170,6 +185,7 @@ void Ui::panels(PanelModel& model, int height) {
   }
   section("View", lines > 33, bold, model, viewPanel);
   if (model.section != nullptr) section("Section", lines > 52, bold, model, sectionPanel);
+  if (model.selection != nullptr) section("Particles", lines > 72, bold, model, selectionPanel);
   section("Changes", lines > 56, bold, model, changesPanel);
   section("Energy", lines > 58, bold, model, energyPanel);
   if (!model.frame.gauges.empty()) section("Gauges", true, bold, model, gaugesPanel);
@@ -184,6 +200,11 @@ void Ui::inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& ori
   inspectorCard(model, frame, origin, area);
 }
 
+void Ui::selection(const SelectionModel& model, const FrameView& frame, const Projection& projection,
+                   const Rect& area) const {
+  selectionOverlay(model, frame, projection, area);
+}
+
 void Ui::sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin) const {
   migiwa::sectionPointer(model, info, origin);
 }
@@ -194,6 +215,14 @@ void Ui::sceneEditor(SceneEditor& editor, const Rect& area) const {
 
 void Ui::gallery(GalleryModel& gallery, const Rect& area) const {
   galleryWindow(gallery, area, state_->fonts);
+}
+
+void Ui::command(CommandModel& model, const Rect& area) const {
+  commandWindow(model, area, state_->fonts);
+}
+
+void Ui::bindings(bool& open, const Rect& area) const {
+  bindingsWindow(open, area);
 }
 
 void Ui::caption(const Caption& caption, const Rect& area) const {

@@ -33,7 +33,8 @@ void drawCaption(const Caption& caption, const Rect& area, const Fonts& fonts);
 class Ui {
  public:
   /// `scale`: size of text and panels relative to that on a picture 720 pixels high.
-  explicit Ui(double scale);
+  /// `clipboard`: with nothing in it text is kept for this Ui alone.
+  explicit Ui(double scale, Clipboard clipboard = {});
   ~Ui();
   Ui(const Ui&) = delete;
   Ui& operator=(const Ui&) = delete;
@@ -47,10 +48,16 @@ class Ui {
   void timeLine(PanelModel& model, const Rect& area) const;
   void sceneEditor(SceneEditor& editor, const Rect& area) const;
   void gallery(GalleryModel& gallery, const Rect& area) const;
+  void command(CommandModel& model, const Rect& area) const;
+  /// What keys and the mouse do.
+  void bindings(bool& open, const Rect& area) const;
   /// The particle that is looked into, over the picture of `area` as `projection` shows it, and its card.
   /// `origin`: what positions are relative to (m).
   void inspector(InspectModel& model, const FrameInfo& frame, const Vec3d& origin,
                  const Projection& projection, const Rect& area) const;
+  /// The particles that are selected, over the picture of `area` as `projection` shows it.
+  void selection(const SelectionModel& model, const FrameView& frame, const Projection& projection,
+                 const Rect& area) const;
   /// The value of the section under the mouse; `origin` as for the inspector.
   void sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin) const;
   void caption(const Caption& caption, const Rect& area) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <vector>
 
 #include "app/ui/ui.h"
 #include "core/base/messages.h"
@@ -17,18 +18,38 @@ std::string titleOf(std::string_view key) {
   return title;
 }
 
+namespace {
+
+std::vector<RowPlace>& rowsOfFrame() {
+  static std::vector<RowPlace> rows;
+  return rows;
+}
+
+}  // namespace
+
 void rowLabel(const char* label) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(label);
   ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 7.6F * ImGui::GetFontSize());
   ImGui::SetNextItemWidth(-1);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  rowsOfFrame().push_back(
+      {label, corner.x, corner.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
+}
+
+std::span<const RowPlace> rowPlaces() {
+  return rowsOfFrame();
+}
+
+void forgetRows() {
+  rowsOfFrame().clear();
 }
 
 bool choice(const char* id, int& index, std::span<const std::string_view> names) {
   bool changed = false;
   const auto at = static_cast<std::size_t>(index);
   const std::string current(at < names.size() ? names[at] : "");
-  if (!ImGui::BeginCombo(id, current.c_str())) return false;
+  if (!ImGui::BeginCombo(id, current.c_str(), ImGuiComboFlags_HeightLarge)) return false;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool selected = static_cast<int>(i) == index;
     if (ImGui::Selectable(std::string(names[i]).c_str(), selected) && !selected) {

@@ -24,6 +24,15 @@ namespace migiwa {
 std::string titleOf(std::string_view key);
 /// A label in the left column; the next widget fills the right one.
 void rowLabel(const char* label);
+/// Where the right column of a row is (pixels), by its label.
+struct RowPlace {
+  std::string label;
+  float x, y, width, height;
+};
+/// Of the last frame, in the order in which they are drawn.
+std::span<const RowPlace> rowPlaces();
+/// A frame begins.
+void forgetRows();
 /// A drop-down list over names; returns whether `index` changed. It may begin beyond them.
 bool choice(const char* id, int& index, std::span<const std::string_view> names);
 /// What sliders of numbers have that span powers of ten.
@@ -57,6 +66,8 @@ void whatIfPanel(PanelModel& model);
 void changesPanel(PanelModel& model);
 /// Needs the model's section.
 void sectionPanel(PanelModel& model);
+/// Needs the model's selection.
+void selectionPanel(PanelModel& model);
 void performancePanel(PanelModel& model);
 /// Energies over the run, against what was given.
 void energyPanel(PanelModel& model);
@@ -76,6 +87,10 @@ void inspectorOverlay(const InspectModel& model, const FrameInfo& frame, const P
                       const Rect& area);
 /// In the upper right corner of `area`: its values, and gamma by every method.
 void inspectorCard(InspectModel& model, const FrameInfo& frame, const Vec3d& origin, const Rect& area);
+
+/// Over the picture: the particles that are selected, and the rectangle that is being drawn.
+void selectionOverlay(const SelectionModel& model, const FrameView& frame, const Projection& projection,
+                      const Rect& area);
 
 /// What the section has under the mouse.
 void sectionPointer(const SectionModel& model, const ColorFieldInfo& info, const Vec3d& origin);
@@ -133,6 +148,12 @@ void gaugePlot(std::span<const GaugeSample> samples, float height);
 
 /// Fills the width of the current ImGui window; `height` is that of the plot with its labels (pixels).
 void errorPlot(std::span<const IterationError> errors, double tolerance, float height);
+
+/// Draws the command line that reproduces what is seen over `area`, if it is open.
+void commandWindow(CommandModel& model, const Rect& area, const Fonts& fonts);
+
+/// Draws the list of keys and mouse over `area`, if it is open (app/ui/bindings.h).
+void bindingsWindow(bool& open, const Rect& area);
 
 /// Draws the gallery's window over `area`, if it is open.
 void galleryWindow(GalleryModel& model, const Rect& area, const Fonts& fonts);

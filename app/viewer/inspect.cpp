@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "app/ui/bindings.h"
 #include "app/viewer/viewer.h"
 
 namespace migiwa {
@@ -74,6 +75,7 @@ void Viewer::inspect(const FrameView& frame, const InputState& input, const Rect
   if (pressed && free && !doubleClicked_) pressedAt_ = {input.mouseX, input.mouseY};
   const bool clicked =
       released && pressedAt_ &&
+      actionOf(MouseGesture::click, MouseButton::left, input) == MouseAction::pick &&
       std::hypot(input.mouseX - (*pressedAt_)[0], input.mouseY - (*pressedAt_)[1]) < kClickPixels;
   if (released) pressedAt_.reset();
 
@@ -88,7 +90,6 @@ void Viewer::inspect(const FrameView& frame, const InputState& input, const Rect
     if (under && !hidden(frame, *under, input, area)) model.hovered = valuesOf(frame, *under);
     if (clicked) model.id = model.hovered ? std::optional(model.hovered->id) : std::nullopt;
   }
-  if (!ui_.wantsKeyboard() && input.down(Key::escape)) model.id.reset();
   lookInto(frame);
 }
 

@@ -86,7 +86,7 @@ void Viewer::moveSection(const InputState& input, const Rect& area) {
   SectionModel& model = *options_.section;
   SectionView& view = view_.section;
   const bool free = contains(area, input) && !ui_.wantsMouse();
-  if (view.shown && free && input.control && input.wheel != 0)
+  if (free && input.wheel != 0 && wheelMovesSection(input))
     view.at += 0.5 * scene_.particleSpacing * static_cast<double>(input.wheel);
   model.pointed.reset();
   if (!view.shown || !model.raster) {

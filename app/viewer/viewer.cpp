@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/LU>
 
@@ -14,8 +13,6 @@
 
 namespace migiwa {
 namespace {
-
-constexpr double kDoubleClickSeconds = 0.3;
 
 void addOutline(const Drain& drain, const Bounds& scene, std::vector<LineSegment>& out) {
   if (drain.shape == DrainShape::sphere)
@@ -56,7 +53,7 @@ Viewer::Viewer(const Scene& scene, WallDrawing walls, const ViewerOptions& optio
       view_{scene.view.camera, scene.view.clip, scene.view.color, true,
             scene.view.nodes,  options.panels,  options.water},
       renderer_(surroundings(scene, std::move(walls)), options.colors),
-      ui_(options.scale) {
+      ui_(options.scale, options.clipboard) {
   takeView();
   undo_.begin(undoable());
 }
@@ -110,7 +107,8 @@ void Viewer::answerText(int request) {
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
                          int height) {
   if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
-  const Rect area = ui_.sceneArea(width, height, view_.panels, run.line.branches.size());
+  area_ = ui_.sceneArea(width, height, view_.panels, run.line.branches.size());
+  const Rect area = area_;
 
   // The first frame's panels know their own size only once they have been laid out.
   if (!laidOut_) {
@@ -128,11 +126,13 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
                      (input.mouseX != last_.mouseX || input.mouseY != last_.mouseY);
   mouseUsed_ = mouseUsed_ || moved || (input.down(MouseButton::left) && !last_.down(MouseButton::left));
   // What is drawn over the picture is drawn for the camera of the picture.
+  select(frame, input, area);
   moveCamera(input, area);
   moveSection(input, area);
   inspect(frame, input, area);
   UiCommands commands = drawUi(frame, run, area);
   if (!ui_.wantsKeyboard()) keys(input, run, commands);
+  if (commands.listKeys) listsKeys_ = !listsKeys_;
   watchText();
   const bool held = std::any_of(input.buttons.begin(), input.buttons.end(), [](bool down) { return down; });
   undo_.look(undoable(), held || ui_.busy(), input.seconds);
@@ -192,7 +192,11 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
   if (options_.inspect != nullptr)
     ui_.inspector(*options_.inspect, frame.info, scene_.origin,
                   makeProjection(view_.camera, target_->width(), target_->height(), area), area);
+  if (options_.selection != nullptr && !asShown(frame).water)
+    ui_.selection(*options_.selection, frame,
+                  makeProjection(view_.camera, target_->width(), target_->height(), area), area);
   if (view_.panels) {
+    measureSelection(frame);
     PanelModel model{frame.info,
                      run,
                      options_.timings,
@@ -206,6 +210,8 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
                      options_.whatIf,
                      options_.gallery,
                      options_.section,
+                     options_.command,
+                     options_.selection,
                      history_,
                      undo_};
     ui_.panels(model, target_->height());
@@ -213,6 +219,8 @@ UiCommands Viewer::drawUi(const FrameView& frame, const RunStatus& run, const Re
     if (options_.editor != nullptr) ui_.sceneEditor(*options_.editor, area);
   }
   if (options_.gallery != nullptr && options_.gallery->open) drawGallery(area);
+  if (options_.command != nullptr) ui_.command(*options_.command, area);
+  ui_.bindings(listsKeys_, area);
   return commands;
 }
 
@@ -268,39 +276,6 @@ std::array<double, 2> Viewer::colorRange(ColorField field) const {
   return {info.low, info.high};
 }
 
-void Viewer::moveCamera(const InputState& input, const Rect& area) {
-  const bool left = input.down(MouseButton::left);
-  const bool other = input.down(MouseButton::right) || input.down(MouseButton::middle);
-  const bool pressed = left && !last_.down(MouseButton::left);
-  const bool free = contains(area, input) && !ui_.wantsMouse();
-  if (!left && !other) draggingScene_ = false;
-  const bool dragged = draggingScene_;
-  if ((left || other) && !draggingScene_ && free) draggingScene_ = true;
-
-  sinceClick_ += input.seconds;
-  if (pressed && free) {
-    doubleClicked_ = sinceClick_ < kDoubleClickSeconds;
-    if (doubleClicked_) {
-      const auto point = pointAt(static_cast<int>(input.mouseX), static_cast<int>(input.mouseY), area);
-      if (point) lookAt(view_.camera, *point);
-    }
-    sinceClick_ = 0;
-  }
-
-  const double dx = static_cast<double>(input.mouseX - last_.mouseX) / area.height;
-  const double dy = static_cast<double>(input.mouseY - last_.mouseY) / area.height;
-  if (dragged && left && !input.shift) orbit(view_.camera, std::numbers::pi * dx, std::numbers::pi * dy);
-  if (dragged && (other || input.shift)) {
-    // What lies at the target's distance follows the mouse.
-    const double height = 2 * (view_.camera.eye - view_.camera.target).norm() *
-                          std::tan(view_.camera.fovDegrees * std::numbers::pi / 360);
-    pan(view_.camera, dx * height, -dy * height);
-  }
-  const bool movesSection = input.control && options_.section != nullptr && view_.section.shown;
-  if (free && input.wheel != 0 && !movesSection)
-    zoom(view_.camera, std::pow(0.9, static_cast<double>(input.wheel)));
-}
-
 Undoable Viewer::undoable() const {
   const SceneEditor* editor = options_.editor;
   return {settings_, view_, editor != nullptr ? editor->text : "", editor != nullptr ? editor->applied : ""};
@@ -338,28 +313,6 @@ void Viewer::restore(const Undoable& state, UiCommands& commands) {
   }
   // The scene comes with settings and a view of its own.
   if (awaitsText_) afterwards_ = state;
-}
-
-void Viewer::keys(const InputState& input, const RunStatus& run, UiCommands& commands) {
-  const auto pressed = [&](Key key) { return input.down(key) && !last_.down(key); };
-  if (input.control && !input.alt && pressed(Key::z)) commands.undo = input.shift ? -1 : 1;
-  if (input.control && !input.alt && pressed(Key::y)) commands.undo = -1;
-  if (input.control || input.alt) return;
-  if (pressed(Key::space)) (run.playing ? commands.pause : commands.play) = true;
-  if (pressed(Key::right)) commands.step = true;
-  if (pressed(Key::left)) commands.stepBack = true;
-  if (const TimeLineView::Branch* branch = run.line.present()) {
-    if (pressed(Key::home)) commands.goTo = {branch->number, branch->from};
-    if (pressed(Key::end)) commands.goTo = {branch->number, branch->until};
-  }
-  if (pressed(Key::r)) commands.reset = true;
-  if (pressed(Key::p)) commands.savePicture = true;
-  if (pressed(Key::h)) view_.panels = !view_.panels;
-  if (pressed(Key::c)) {
-    BoundaryHandling& handling = settings_.boundary.handling;
-    handling = handling == BoundaryHandling::gamma ? BoundaryHandling::none : BoundaryHandling::gamma;
-    commands.settings = true;
-  }
 }
 
 std::optional<Vec3d> Viewer::pointAt(int x, int y, const Rect& area) const {

@@ -40,7 +40,12 @@ struct ViewerOptions {
   GalleryModel* gallery = nullptr;
   /// The section through the water; null: not offered. Outlives the viewer.
   SectionModel* section = nullptr;
-  bool water = false;  ///< ViewState::water to begin with
+  /// The particles that are selected; null: not offered. Outlives the viewer.
+  SelectionModel* selection = nullptr;
+  /// The command line of what is seen; null: not offered. Outlives the viewer.
+  CommandModel* command = nullptr;
+  bool water = false;     ///< ViewState::water to begin with
+  Clipboard clipboard{};  ///< as of Ui
 };
 
 /// The scale that suits a picture of this size.
@@ -75,6 +80,10 @@ class Viewer {
   }
   const UndoHistory& changes() const { return undo_; }
   ViewState& view() { return view_; }
+  const Scene& scene() const { return scene_; }
+  double scale() const { return options_.scale; }
+  /// The part of the last frame that shows the scene.
+  const Rect& area() const { return area_; }
   /// The particle that is looked into; null where none can be.
   const InspectModel* inspected() const { return options_.inspect; }
   ColorFieldInfo colorInfo(ColorField field) const {
@@ -93,6 +102,9 @@ class Viewer {
   void inspect(const FrameView& frame, const InputState& input, const Rect& area);
   bool hidden(const FrameView& frame, std::size_t particle, const InputState& input, const Rect& area) const;
   void lookInto(const FrameView& frame);
+  void select(const FrameView& frame, const InputState& input, const Rect& area);
+  void selectInside(const FrameView& frame, const Rect& area);
+  void measureSelection(const FrameView& frame);
   ColorFieldInfo sectionInfo() const;
   void moveSection(const InputState& input, const Rect& area);
   std::optional<CutPlane> sectionCut() const;
@@ -102,6 +114,8 @@ class Viewer {
   void undo(UiCommands& commands);
   void restore(const Undoable& state, UiCommands& commands);
   void keys(const InputState& input, const RunStatus& run, UiCommands& commands);
+  void close();
+  bool wheelMovesSection(const InputState& input) const;
   std::optional<Vec3d> pointAt(int x, int y, const Rect& area) const;
   void takeView();
   Caption caption(const FrameView& frame, const RunStatus& run) const;
@@ -126,11 +140,14 @@ class Viewer {
   std::array<double, 2> sheetRange_{};
   bool sheetLines_ = false;
   InputState last_;
+  Rect area_;
   bool laidOut_ = false;
+  bool listsKeys_ = false;
   bool draggingScene_ = false, mouseUsed_ = false;
-  std::optional<std::array<float, 2>> pressedAt_;  ///< where the left button went down on the scene
-  double sinceClick_ = 1;                          ///< (s)
-  bool doubleClicked_ = false;                     ///< by the last press
+  std::optional<std::array<float, 2>> pressedAt_;      ///< where the left button went down on the scene
+  std::optional<std::array<float, 2>> selectingFrom_;  ///< the corner where the rectangle began
+  double sinceClick_ = 1;                              ///< (s)
+  bool doubleClicked_ = false;                         ///< by the last press
 };
 
 /// Whether a place of the picture (pixels, from the top left) is in `area` and the mouse in the picture.

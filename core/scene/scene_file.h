@@ -75,6 +75,9 @@ std::string startOf(Scene scene);
 /// "/solver/tolerance=0.01". Names, duration and view do not count; "none" stands for a key that goes.
 std::vector<std::string> changesBetween(const Scene& from, const Scene& to);
 
+/// The same of their views, with "null" for a key that goes: all of them can be given to --set.
+std::vector<std::string> viewChangesBetween(const Scene& from, const Scene& to);
+
 // The scene format for editors and for people, made from the list of fields that the reader uses.
 
 /// JSON Schema (draft 2020-12) of a scene file, `scenes/scene.schema.json`.

@@ -196,19 +196,42 @@ std::string startOf(Scene scene) {
   return compactJson(sceneIdentity(scene));
 }
 
-std::vector<std::string> changesBetween(const Scene& from, const Scene& to) {
-  const Json before = sceneIdentity(from), after = sceneIdentity(to);
-  std::vector<std::string> changes;
-  for (const Json::json_pointer& place : differences(
-           before, after, [&](const Json::json_pointer& above) { return before.at(above).is_array(); })) {
+namespace {
+
+/// As options of --set; what goes is said by `gone`.
+template <class Whole>
+std::vector<std::string> optionsBetween(const Json& before, const Json& after, const char* gone,
+                                        const Whole& whole) {
+  std::vector<std::string> options;
+  for (const Json::json_pointer& place : differences(before, after, whole)) {
     const bool there = after.contains(place);
     const bool word = there && after.at(place).is_string();
-    changes.push_back(place.to_string() + "=" +
-                      (!there ? "none"
+    options.push_back(place.to_string() + "=" +
+                      (!there ? gone
                        : word ? after.at(place).get<std::string>()
                               : compactJson(after.at(place))));
   }
-  return changes;
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> changesBetween(const Scene& from, const Scene& to) {
+  const Json before = sceneIdentity(from), after = sceneIdentity(to);
+  return optionsBetween(before, after, "none",
+                        [&](const Json::json_pointer& above) { return before.at(above).is_array(); });
+}
+
+std::vector<std::string> viewChangesBetween(const Scene& from, const Scene& to) {
+  const auto viewOf = [](const Scene& scene) {
+    return Json{{"view", written(scene, fileIdentity).at("view")}};
+  };
+  const Json before = viewOf(from);
+  // The file may have none of these, and then a part of one would not do.
+  return optionsBetween(before, viewOf(to), "null", [&](const Json::json_pointer& above) {
+    return before.at(above).is_array() ||
+           (!above.empty() && (above.back() == "camera" || above.back() == "clip"));
+  });
 }
 
 Json sceneIdentity(const Scene& scene) {

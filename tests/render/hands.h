@@ -1,4 +1,4 @@
-// Hands at a window that is none: they press what they read.
+// Hands that press what they read, and say what was asked for by it.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 
 #include "app/platform/context.h"
 #include "app/session/ui_state.h"
+#include "app/viewer/hands.h"
 #include "tests/render/shown_text.h"
 
 namespace migiwa::testing {
@@ -16,23 +17,18 @@ namespace migiwa::testing {
 class Hands {
  public:
   /// `frame` draws one.
-  explicit Hands(std::function<UiCommands(const InputState&)> frame) : frame_(std::move(frame)) {}
+  explicit Hands(std::function<UiCommands(const InputState&)> frame)
+      : frame_(std::move(frame)), hands_([this](const InputState& input) { take(input); }) {}
+  Hands(const Hands&) = delete;
+  Hands& operator=(const Hands&) = delete;
 
   /// Frames without input.
-  void look(int frames = 3) {
-    for (int k = 0; k < frames; ++k) take(InputState{});
-  }
+  void look(int frames = 3) { hands_.look(frames); }
   /// Moves there, presses, and lets go: the commands of all frames together.
   UiCommands click(float x, float y) { return drag(x, y, x, y); }
   UiCommands drag(float x, float y, float u, float v) {
     all_ = {};
-    take(at(x, y, false));
-    take(at(x, y, false));
-    take(at(x, y, true));
-    take(at(0.5F * (x + u), 0.5F * (y + v), true));
-    take(at(u, v, true));
-    take(at(u, v, false));
-    take(at(u, v, false));
+    hands_.drag({x, y}, {u, v}, {});
     return all_;
   }
   /// The widget that bears these words, or lies so far beside them (pixels).
@@ -52,36 +48,16 @@ class Hands {
   }
   UiCommands press(Key key, bool control = false, bool shift = false) {
     all_ = {};
-    InputState input;
-    input.control = control, input.shift = shift;
-    take(input);
-    input.keys[static_cast<std::size_t>(key)] = true;
-    take(input);
-    take(InputState{});
+    hands_.press(key, {control, shift});
     return all_;
   }
   UiCommands wheel(float x, float y, float notches, bool control = false) {
     all_ = {};
-    InputState input = at(x, y, false);
-    input.seconds = 1.0 / 60;
-    take(input);
-    InputState turned = input;
-    turned.wheel = notches;
-    turned.control = control;
-    take(turned);
-    take(input);
+    hands_.wheel({x, y}, notches, {control});
     return all_;
   }
 
  private:
-  static InputState at(float x, float y, bool pressed) {
-    InputState input;
-    input.mouseInside = true;
-    input.mouseX = x, input.mouseY = y;
-    input.buttons[0] = pressed;
-    input.seconds = 0.5;  // no two clicks are a double click
-    return input;
-  }
   void take(const InputState& input) {
     const UiCommands now = frame_(input);
     all_.play |= now.play, all_.pause |= now.pause, all_.step |= now.step, all_.reset |= now.reset;
@@ -90,6 +66,7 @@ class Hands {
 
   std::function<UiCommands(const InputState&)> frame_;
   UiCommands all_;
+  migiwa::Hands hands_;
 };
 
 }  // namespace migiwa::testing

@@ -197,11 +197,13 @@ Faults picturesNotShown(const std::vector<std::string>& pictures, const std::vec
 }
 
 /// Pictures that no command of `run` makes: it names them as a file, where a variable stands for any part but
-/// the first, or as what its functions single, compareSheet, film, rayTraced and windowPicture make.
+/// the first, or as what its functions single, compareSheet, film, rayTraced, windowPicture and scriptPicture
+/// make.
 Faults picturesNotMade(const std::vector<std::string>& pictures, const std::string& run) {
   static const std::regex named(R"(([A-Za-z0-9_]+(?:\$[a-z_]+[A-Za-z0-9_]*)*)\.png)"),
       variable(R"(\$[a-z_]+)");
-  static const std::regex made(R"((?:single|compareSheet|film|rayTraced|windowPicture) ([A-Za-z0-9_]+) )");
+  static const std::regex made(
+      R"((?:single|compareSheet|film|rayTraced|windowPicture|scriptPicture) ([A-Za-z0-9_]+) )");
   std::vector<std::regex> names;
   for (std::sregex_iterator match(run.begin(), run.end(), named), end; match != end; ++match)
     names.emplace_back(std::regex_replace((*match)[1].str(), variable, "[a-z0-9_]+"));

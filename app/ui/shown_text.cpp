@@ -1,0 +1,109 @@
+#include "app/ui/shown_text.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include <imgui.h>
+
+#include "app/ui/widgets.h"
+#include "core/base/messages.h"
+
+namespace migiwa {
+namespace {
+
+/// Where a letter lies in the fonts' texture: its upper left and lower right corner.
+using Place = std::array<float, 4>;
+
+std::map<Place, char> letters() {
+  std::map<Place, char> result;
+  for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
+    for (const ImFontGlyph& glyph : font->Glyphs)
+      if (glyph.Visible != 0)
+        result[{glyph.U0, glyph.V0, glyph.U1, glyph.V1}] =
+            glyph.Codepoint < 128 ? static_cast<char>(glyph.Codepoint) : '?';
+  return result;
+}
+
+/// The text, and of each letter the middle (pixels).
+struct ShownLetters {
+  std::string text;
+  std::vector<std::array<float, 2>> places;
+  void add(char letter, float x, float y) {
+    text += letter;
+    places.push_back({x, y});
+  }
+};
+
+ShownLetters lettersShown() {
+  // A space is wider.
+  const float adjoining = 0.2F * ImGui::GetIO().Fonts->Fonts.front()->FontSize;
+  const std::map<Place, char> known = letters();
+  ShownLetters all;
+  const ImDrawData& drawn = *ImGui::GetDrawData();
+  for (int list = 0; list < drawn.CmdListsCount; ++list) {
+    const ImVector<ImDrawVert>& corners = drawn.CmdLists[list]->VtxBuffer;
+    ImVec2 end{-1e9F, 0};
+    for (int k = 0; k + 3 < corners.Size; ++k) {
+      const ImDrawVert &first = corners[k], &last = corners[k + 2];
+      const auto letter = known.find({first.uv.x, first.uv.y, last.uv.x, last.uv.y});
+      if (letter == known.end()) continue;
+      const float gap = first.pos.x - end.x;
+      const bool sameLine = first.pos.y < end.y;
+      const float x = 0.5F * (first.pos.x + last.pos.x), y = 0.5F * (first.pos.y + last.pos.y);
+      if (!sameLine || gap < -adjoining || gap > adjoining) all.add(' ', x, y);
+      all.add(letter->second, x, y);
+      end = last.pos;
+      k += 3;
+    }
+    all.add(' ', end.x, end.y);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string shownText() {
+  return lettersShown().text;
+}
+
+std::optional<std::array<float, 2>> placeOfText(const std::string& words, bool uppermost) {
+  const ShownLetters all = lettersShown();
+  const std::string alone = ' ' + words + ' ';
+  const std::size_t at = uppermost ? all.text.rfind(alone) : all.text.find(alone);
+  if (at == std::string::npos) return std::nullopt;
+  return all.places[at + 1 + words.size() / 2];
+}
+
+std::optional<std::array<float, 2>> placeOfWidget(const std::string& name, std::optional<double> share) {
+  for (const RowPlace& row : rowPlaces()) {
+    if (row.label != name) continue;
+    // A checkbox is as wide as the row is high.
+    const float margin = 0.5F * row.height;
+    const float x = row.x + static_cast<float>(share.value_or(0.5)) * row.width;
+    return {{std::clamp(x, row.x + margin, std::max(row.x + row.width - margin, row.x + margin)),
+             row.y + margin}};
+  }
+  return placeOfText(name);
+}
+
+std::vector<std::string> namesLike(const std::string& name, std::size_t most) {
+  std::vector<std::string> names;
+  for (const RowPlace& row : rowPlaces()) names.push_back(row.label);
+  std::istringstream text(shownText());
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.push_back(word);
+  const auto count = static_cast<std::size_t>(1 + std::count(name.begin(), name.end(), ' '));
+  for (std::size_t k = 0; k + count <= words.size(); ++k) {
+    std::string phrase = words[k];
+    for (std::size_t n = 1; n < count; ++n) phrase += ' ' + words[k + n];
+    if (std::find(names.begin(), names.end(), phrase) == names.end()) names.push_back(std::move(phrase));
+  }
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return editDistance(name, a) < editDistance(name, b);
+  });
+  names.resize(std::min(names.size(), most));
+  return names;
+}
+
+}  // namespace migiwa
