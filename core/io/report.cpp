@@ -406,7 +406,7 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
       ratio(1e9 * iterationSeconds(run.stages), run.particleIterationSum);
   report.iterationsMean = ratio(run.iterationSum, steps);
   report.iterationsMax = run.iterationMax;
-  if (simulation.settings().solver.velocityStep == VelocityStep::projection)
+  if (simulation.settings().solver.solvesDivergence())
     report.pressureIterationsMean = ratio(run.pressureIterationSum, steps);
   report.densityErrorMean = ratio(run.densityErrorSum, steps);
   report.densityErrorMax = run.densityErrorMax;

@@ -94,7 +94,7 @@ void PressureSum::iterate(const StepState& state, float weight) {
 }
 
 void PressureSum::pressures(const StepState& state, std::vector<float>& out) const {
-  if (watched_ && state.projects()) {
+  if (watched_ && state.takesPressure()) {
     const auto density = static_cast<float>(state.parameters.restDensity);
     out.resize(state.projectedPressure.size());
     std::transform(state.projectedPressure.begin(), state.projectedPressure.end(), out.begin(),
