@@ -7,7 +7,6 @@
 #include "app/ui/ui.h"
 #include "app/ui/widgets.h"
 #include "core/base/messages.h"
-#include "core/solver/solvers.h"
 
 namespace migiwa {
 
@@ -164,7 +163,7 @@ void solverPanel(PanelModel& model) {
   changed |= toleranceRow(solver);
   rowLabel("Method");
   int method = static_cast<int>(solver.method);
-  if (choice("##method", method, kSolverNames)) {
+  if (choice("##method", method, kSolverMethodNames)) {
     solver.takeMethod(static_cast<SolverMethod>(method));
     changed = true;
   }

@@ -9,7 +9,6 @@
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
-#include "core/solver/solvers.h"
 
 namespace migiwa {
 
@@ -183,7 +182,7 @@ void describeWcsph(Visitor& visitor, Visited<Visitor, WcsphParameters>& wcsph) {
 template <class Visitor>
 void describeMethod(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   visitor.choice(
-      "method", solver.method, kSolverNames,
+      "method", solver.method, kSolverMethodNames,
       {"",
        "How the fluid is kept from being compressed: pbf, Position Based Fluids; wcsph, a stiff "
        "equation of state; pcisph, pressures that grow by the density that they lead to; dfsph, by "
@@ -192,7 +191,7 @@ void describeMethod(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
        "with dfsph max_iterations 50, tolerance 0.001 and divergence_tolerance 0.001."});
   if constexpr (Visitor::kChanges)
     if (solver.method != SolverMethod::pbf) solver.takeMethod(solver.method);
-  const std::string_view name = kSolverNames[static_cast<std::size_t>(solver.method)];
+  const std::string_view name = kSolverMethodNames[static_cast<std::size_t>(solver.method)];
   bool present = solver.method == SolverMethod::wcsph;
   visitor.object(
       "wcsph", {"", "Of the method wcsph."}, [&](auto& fields) { describeWcsph(fields, solver.wcsph); },
@@ -260,7 +259,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
         chosenBy,
         "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
         "\"cubic_spline\", for \"" +
-            std::string(isPbf ? "projection" : kSolverNames[static_cast<std::size_t>(solver.method)]) +
+            std::string(isPbf ? "projection" : kSolverMethodNames[static_cast<std::size_t>(solver.method)]) +
             "\"; found \"" + std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
   visitor.number(
       "divergence_tolerance", solver.divergenceTolerance, Range::halfOpen(0, 1),

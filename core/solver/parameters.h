@@ -10,8 +10,9 @@
 
 namespace migiwa {
 
-/// How the fluid is kept from being compressed; the names are those of core/solver/solvers.h.
+/// How the fluid is kept from being compressed; core/solver/solvers.h has what does it.
 enum class SolverMethod { pbf, wcsph, pcisph, dfsph };
+inline constexpr std::array<std::string_view, 4> kSolverMethodNames{"pbf", "wcsph", "pcisph", "dfsph"};
 
 /// Of weakly compressible SPH.
 struct WcsphParameters {

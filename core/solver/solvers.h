@@ -2,7 +2,8 @@
 #pragma once
 
 #include <array>
-#include <string_view>
+
+#include "core/solver/parameters.h"
 
 namespace migiwa {
 
@@ -11,7 +12,6 @@ struct StepState;
 /// A solver other than PBF from positions: what a step does between `gamma` and the move. The stages before
 /// and after it are those of all.
 struct Solver {
-  std::string_view name;
   /// Puts pressures into state.projectedPressure and what they do into the particles' velocities, at the
   /// places state.current, whose neighbours and gamma are known. All but PBF leave density, lambda and
   /// density errors, too, of which PBF's constraint makes its own.
@@ -30,16 +30,11 @@ double soundStep(const StepState& state);
 
 /// In the order of SolverMethod.
 inline constexpr std::array kSolvers{
-    Solver{"pbf", stages::projectVelocities, nullptr},  // "velocity_step": "projection"
-    Solver{"wcsph", stages::pressByDensity, soundStep},
-    Solver{"pcisph", stages::pressByPrediction, nullptr},
-    Solver{"dfsph", stages::pressFreeOfDivergence, nullptr},
+    Solver{stages::projectVelocities, nullptr},  // pbf, with "velocity_step": "projection"
+    Solver{stages::pressByDensity, soundStep},
+    Solver{stages::pressByPrediction, nullptr},
+    Solver{stages::pressFreeOfDivergence, nullptr},
 };
-
-inline constexpr auto kSolverNames = [] {
-  std::array<std::string_view, kSolvers.size()> names;
-  for (std::size_t k = 0; k < names.size(); ++k) names[k] = kSolvers[k].name;
-  return names;
-}();
+static_assert(kSolvers.size() == kSolverMethodNames.size());
 
 }  // namespace migiwa

@@ -50,9 +50,9 @@ restStudy() {
 studyOfSolvers() {
   "$migiwa" study "scenes/$2.json" --set "/particle_spacing=$3" --set /solver/min_iterations=2 \
     --set /solver/max_iterations=50 \
-    --vary /solver/velocity_step:/solver/method=positions:pbf,projection:pbf,positions:wcsph,positions:pcisph,positions:dfsph \
+    --set /solver/velocity_step=positions --vary /solver/method=pbf,wcsph,pcisph,dfsph \
     --vary /solver/wcsph/compression:/solver/tolerance=0.04:0.01,0.01:0.003,0.004:0.001 \
-    --until "$4" --threads 1 --repeat 1 --out "$1/${2##*/}"
+    --until "$4" --threads 1 --repeat 3 --out "$1/${2##*/}"
 }
 
 # studiesOfSolvers DIR: dam break, still tank and standing wave.

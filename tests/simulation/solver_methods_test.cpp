@@ -38,7 +38,7 @@ class SolverMethods : public ::testing::TestWithParam<SolverMethod> {
 INSTANTIATE_TEST_SUITE_P(Each, SolverMethods,
                          ::testing::Values(SolverMethod::wcsph, SolverMethod::pcisph, SolverMethod::dfsph),
                          [](const auto& tested) {
-                           return std::string(kSolverNames[static_cast<std::size_t>(tested.param)]);
+                           return std::string(kSolverMethodNames[static_cast<std::size_t>(tested.param)]);
                          });
 
 Vec3d momentum(const Simulation& simulation) {
