@@ -55,6 +55,12 @@ screenshotsOfWalls() {
   cp out/screenshots/equal_cost/cost_accuracy.png screenshots/equal_cost.png
 }
 
+screenshotsOfSolvers() {
+  say "What accuracy costs: solvers"
+  studyOfSolvers out/screenshots/solvers dam_break 0.08 2
+  cp out/screenshots/solvers/dam_break/cost_accuracy.png screenshots/cost_accuracy_solvers.png
+}
+
 screenshotsOfConvergence() {
   say "How errors follow spacing, iterations and time step"
   convergenceStudies out/screenshots/convergence
@@ -186,13 +192,14 @@ command_screenshots() {
     walls) screenshotsOfWalls && return ;;
     convergence) screenshotsOfConvergence && return ;;
     rest) screenshotsOfRest && return ;;
+    solvers) screenshotsOfSolvers && return ;;
     slim) screenshotsOfSlim && return ;;
     film) screenshotsOfFilm && return ;;
     thumbnails) screenshotsOfThumbnails && return ;;
     window) screenshotsOfWindow && return ;;
     raytraced) screenshotsRayTraced "${@:2}" && return ;;
     '') ;;
-    *) fail "expected gamma, walls, convergence, rest, slim, film, thumbnails, window, raytraced or nothing, found $1" ;;
+    *) fail "expected gamma, walls, convergence, rest, solvers, slim, film, thumbnails, window, raytraced or nothing, found $1" ;;
   esac
   say "Figure 4 of the paper: cut at the middle plane, four times"
   compareSheet dam_break_compare dam_break --times 0,0.4,0.8,4 --size 480x270
@@ -203,6 +210,7 @@ command_screenshots() {
   screenshotsOfWalls
   screenshotsOfConvergence
   screenshotsOfRest
+  screenshotsOfSolvers
   screenshotsOfSlim
   screenshotsOfFilm
   screenshotsOfThumbnails

@@ -164,6 +164,20 @@ void solverPanel(PanelModel& model) {
   }
   changed |= maxIterationsRow(solver);
   changed |= toleranceRow(solver);
+  rowLabel("Method");
+  int method = static_cast<int>(solver.method);
+  if (choice("##method", method, kSolverMethodNames)) {
+    solver.takeMethod(static_cast<SolverMethod>(method));
+    changed = true;
+  }
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "pbf: Position Based Fluids\n"
+        "wcsph: a stiff equation of state, many short steps\n"
+        "pcisph: pressures that grow by the density that they lead to\n"
+        "dfsph: density and divergence, a solve each\n"
+        "Kernel, support radius and tolerance change with it");
+  ImGui::BeginDisabled(solver.method != SolverMethod::pbf);
   rowLabel("Velocities");
   int from = static_cast<int>(solver.velocityStep);
   if (choice("##velocities", from, kVelocityStepNames)) {
@@ -181,6 +195,7 @@ void solverPanel(PanelModel& model) {
     solver.positionStep = static_cast<PositionStep>(step);
     changed = true;
   }
+  ImGui::EndDisabled();
   rowLabel("Time step");
   double milliseconds = 1e3 * solver.timeStep;
   if (logSlider("##time", milliseconds, 0.5, 20, "%.2f ms")) {

@@ -371,7 +371,8 @@ Measure milliseconds(Measure seconds) {
   return seconds ? Measure(1e3 * *seconds) : std::nullopt;
 }
 
-double iterationSeconds(const StageTimes& stages) {
+double iterationSeconds(const StageTimes& stages, SolverMethod method) {
+  if (method != SolverMethod::pbf) return stages.seconds("pressure");
   return stages.seconds("lambda") + stages.seconds("position") + stages.seconds("projection") +
          stages.seconds("gamma_refresh");
 }
@@ -402,11 +403,11 @@ Report makeReport(const Simulation& simulation, const SettledMeasures& settled,
   report.stepP95 = milliseconds(quantile(run.stepSeconds, 0.95));
   for (const StageTime& stage : run.stages.stages())
     report.stages.push_back({stage.name, stage.seconds / std::max(steps, 1.0)});
-  report.nanosecondsPerParticleIteration =
-      ratio(1e9 * iterationSeconds(run.stages), run.particleIterationSum);
+  report.nanosecondsPerParticleIteration = ratio(
+      1e9 * iterationSeconds(run.stages, simulation.settings().solver.method), run.particleIterationSum);
   report.iterationsMean = ratio(run.iterationSum, steps);
   report.iterationsMax = run.iterationMax;
-  if (simulation.settings().solver.velocityStep == VelocityStep::projection)
+  if (simulation.settings().solver.solvesDivergence())
     report.pressureIterationsMean = ratio(run.pressureIterationSum, steps);
   report.densityErrorMean = ratio(run.densityErrorSum, steps);
   report.densityErrorMax = run.densityErrorMax;

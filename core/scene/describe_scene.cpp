@@ -1,6 +1,7 @@
 // Every key of a scene file, in the order in which it is best written.
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <typeinfo>
 
 #include <Eigen/Geometry>
@@ -165,7 +166,43 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
 }
 
 template <class Visitor>
+void describeWcsph(Visitor& visitor, Visited<Visitor, WcsphParameters>& wcsph) {
+  visitor.number(
+      "compression", wcsph.compression, Range::closed(1e-4, 0.1),
+      {"1",
+       "Compression that the speed of sound is chosen for: it is the largest speed of the flow over "
+       "the root of it. That speed is of a fall from the highest fluid to the lowest place."});
+  visitor.number("sound_speed", wcsph.soundSpeed, Range::closed(0, 1e5),
+                 {"m/s", "Speed of sound; 0: by the compression. Steps are as short as it asks."});
+  visitor.number("viscosity", wcsph.viscosity, Range::closed(0, 1),
+                 {"1", "Artificial viscosity alpha, which keeps the sound from growing."});
+}
+
+/// The method, and what goes with it.
+template <class Visitor>
+void describeMethod(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
+  visitor.choice(
+      "method", solver.method, kSolverMethodNames,
+      {"",
+       "How the fluid is kept from being compressed: pbf, Position Based Fluids; wcsph, a stiff "
+       "equation of state; pcisph, pressures that grow by the density that they lead to; dfsph, by "
+       "density and divergence (docs/method.md). With all but pbf the defaults are kernel "
+       "wendland_c2 and support_ratio 2.25, with pcisph min_iterations 3 and max_iterations 50, "
+       "with dfsph max_iterations 50, tolerance 0.001 and divergence_tolerance 0.001."});
+  if constexpr (Visitor::kChanges)
+    if (solver.method != SolverMethod::pbf) solver.takeMethod(solver.method);
+  const std::string_view name = kSolverMethodNames[static_cast<std::size_t>(solver.method)];
+  bool present = solver.method == SolverMethod::wcsph;
+  visitor.object(
+      "wcsph", {"", "Of the method wcsph."}, [&](auto& fields) { describeWcsph(fields, solver.wcsph); },
+      &present);
+  if (present && solver.method != SolverMethod::wcsph)
+    visitor.warning("wcsph", "is not used by the method \"" + std::string(name) + "\"");
+}
+
+template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
+  describeMethod(visitor, solver);
   visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1),
                  {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
@@ -186,7 +223,10 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
        "keep their height, see docs/method.md. With it the defaults are kernel wendland_c2, support_ratio "
        "2.25 and tolerance 0.003."});
   if constexpr (Visitor::kChanges)
-    if (solver.velocityStep == VelocityStep::projection) solver.takeVelocities(VelocityStep::projection);
+    if (solver.method == SolverMethod::pbf && solver.takesPressure())
+      solver.takeVelocities(VelocityStep::projection);
+  if (solver.method != SolverMethod::pbf && solver.velocityStep != SolverParameters().velocityStep)
+    visitor.warning("velocity_step", "belongs to the method \"pbf\" and is not used");
   if (visitor.valid({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
     visitor.fault("min_iterations", "expected at most max_iterations, which is " +
                                         std::to_string(solver.maxIterations) + ", found " +
@@ -211,16 +251,21 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                  {"",
                   "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
                   "paper's plain iteration."});
-  if (solver.velocityStep == VelocityStep::projection && visitor.valid({"kernel", "velocity_step"}) &&
+  const bool isPbf = solver.method == SolverMethod::pbf;
+  const std::string_view chosenBy = isPbf ? "velocity_step" : "method";
+  if (solver.takesPressure() && visitor.valid({"kernel", chosenBy}) &&
       solver.kernel != KernelType::cubicSpline && solver.kernel != KernelType::wendlandC2)
-    visitor.fault("velocity_step",
-                  "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
-                  "\"cubic_spline\", for \"projection\"; found \"" +
-                      std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
-  visitor.number("divergence_tolerance", solver.divergenceTolerance, Range::halfOpen(0, 1),
-                 {"1", "Of a projection: mean divergence times time step that ends its iterations."});
+    visitor.fault(
+        chosenBy,
+        "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
+        "\"cubic_spline\", for \"" +
+            std::string(isPbf ? "projection" : kSolverMethodNames[static_cast<std::size_t>(solver.method)]) +
+            "\"; found \"" + std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
+  visitor.number(
+      "divergence_tolerance", solver.divergenceTolerance, Range::halfOpen(0, 1),
+      {"1", "Of a projection and of dfsph: mean divergence times time step that ends its iterations."});
   visitor.integer("max_pressure_iterations", solver.maxPressureIterations, Range::closed(1, 1000),
-                  {"1", "Of a projection: iterations of the pressure, at most."});
+                  {"1", "Of a projection and of dfsph: iterations against divergence, at most."});
   visitor.number("rest_density", solver.restDensity, Range::closed(1e-6, 1e6),
                  {"kg/m^3", "Density of the fluid at rest."});
 }

@@ -36,6 +36,30 @@ double heightOf(const StepState& state) {
   return static_cast<double>(highest - lowest);
 }
 
+/// The speed of sound (m/s) that weakly compressible SPH needs in the scene: by the largest speed that its
+/// fluid can have, which is that of its sources, emitters and walls and of a fall from its highest to the
+/// lowest place. Never less than a frame's step allows, for that costs nothing.
+double soundSpeed(const Scene& scene, double given) {
+  const WcsphParameters& own = scene.solver.wcsph;
+  if (own.soundSpeed > 0) return own.soundSpeed;
+  const Bounds all = scene.bounds();
+  double fall = 0;
+  const auto fallsFrom = [&](const Bounds& bounds) {
+    if (bounds.empty() || all.empty()) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      // Against gravity from the farthest side of the fluid to that of the scene.
+      const double g = scene.gravity[axis];
+      const double way = g > 0 ? all.max[axis] - bounds.min[axis] : bounds.max[axis] - all.min[axis];
+      fall = std::max(fall, std::abs(g) * way);
+    }
+  };
+  for (const auto& source : scene.fluid) fallsFrom(source->bounds());
+  for (const Emitter& emitter : scene.emitters) fallsFrom(emitter.bounds());
+  const double fastest = std::sqrt(given * given + 2 * fall);
+  const double free = 0.4 * scene.supportRadius() / scene.solver.timeStep;
+  return std::max(fastest / std::sqrt(own.compression), free);
+}
+
 }  // namespace
 
 Simulation::State::State(Scene theScene, int threads, Guards guards)
@@ -78,6 +102,7 @@ void Simulation::State::configure(const Settings& settings) {
   }
   EffectPipeline changedEffects(changed.effects);
   const HealthLimits changedLimits = healthLimits(changed);
+  const double sound = soundSpeed(changed, std::max(changedLimits.given, wallSpeed(0, changed.duration)));
 
   // From here on nothing fails. What goes out of force ends with this function, the method before its walls.
   walls.keep();
@@ -97,6 +122,7 @@ void Simulation::State::configure(const Settings& settings) {
   step.thinWalls = std::move(thin);
   step.collisionWalls = std::move(barring);
   step.lattice = lattice;
+  step.soundSpeed = static_cast<float>(sound);
   step.gammaMethod = gamma.method.get();
   step.wallSlots.clear();
   step.wallSlot.clear();

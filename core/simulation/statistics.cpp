@@ -38,7 +38,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   stepSeconds.push_back(static_cast<float>(seconds));
   stages.add(state.times);
   iterationSum += state.iterations;
-  pressureIterationSum += state.projects() ? state.pressureIterations : 0;
+  pressureIterationSum += state.parameters.solvesDivergence() ? state.pressureIterations : 0;
   particleIterationSum += static_cast<double>(state.particles.size()) * state.iterations;
   iterationMax = std::max(iterationMax, state.iterations);
   const IterationError& error = state.errors.back();
@@ -49,7 +49,7 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   lostParticles = health.lost;
   nonfiniteParticles = health.nonfinite;
 
-  if (error.mean > state.parameters.tolerance) {
+  if (error.mean > state.parameters.tolerance && state.iterations >= state.parameters.maxIterations) {
     note("not_converged", steps,
          "mean density error " + std::to_string(error.mean) + " after " + std::to_string(state.iterations) +
              " iterations, tolerance " + std::to_string(state.parameters.tolerance));

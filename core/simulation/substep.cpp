@@ -220,7 +220,7 @@ void Simulation::advanceFrame() {
     if (parameters.cfl > 0) {
       const double speed = state.largestSpeed(start, longest);
       if (speed * step > reach) step = reach / speed;
-      step = std::min(step, state.effects.longestStep(state.step));
+      step = std::min(step, migiwa::longestStep(state.step, state.effects));
     }
     // In doubles: a step that the CFL rule makes short enough has more parts than a whole number holds.
     const double wanted = std::ceil(left / step - 1e-6), most = static_cast<double>(kMostSubsteps - taken);

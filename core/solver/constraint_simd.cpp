@@ -64,8 +64,8 @@ stages::ErrorSum lambdaOfRange(StepState& state, std::size_t begin, std::size_t 
   const float epsilon = static_cast<float>(state.parameters.cfmEpsilon) * state.lattice.squaredGradients;
   const bool divideByGamma = state.parameters.positionStep == PositionStep::gradient;
   const bool added = state.addsWallDensity();
-  const float wallSlope = state.projects() ? state.lattice.wallSlope : 0;
-  const float wallBend = state.projects() ? state.lattice.wallBend : 0;
+  const float wallSlope = state.takesPressure() ? state.lattice.wallSlope : 0;
+  const float wallBend = state.takesPressure() ? state.lattice.wallBend : 0;
   const PairScale scale(state);
   const PairVector one = hn::Set(d, 1.0F), zero = hn::Zero(d);
   const auto ofNeighbours = [&state](const auto& centre, std::size_t i)

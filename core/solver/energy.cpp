@@ -80,13 +80,13 @@ void PressureSum::clear() {
 }
 
 void PressureSum::begin(const StepState& state) {
-  if (!watched_ || state.projects()) return;
+  if (!watched_ || state.takesPressure()) return;
   now_.assign(state.particles.size(), 0);
   before_.assign(state.particles.size(), 0);
 }
 
 void PressureSum::iterate(const StepState& state, float weight) {
-  if (!watched_ || state.projects()) return;
+  if (!watched_ || state.takesPressure()) return;
   parallelFor(state.pool, now_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) before_[i] += weight * (now_[i] + state.lambda[i] - before_[i]);
   });
@@ -98,19 +98,26 @@ void PressureSum::project(const StepState& state) {
   now_.resize(state.particles.size());
   const float gravity = state.gravity.norm(), inverseStep = 1 / state.timeStep;
   parallelEach(state.pool, now_.size(), [&](std::size_t i) {
-    const float slope = std::min(inverseStep * state.projection.image[i], gravity);
-    now_[i] = inverseStep * state.projection.potential[i] + 0.5F * state.spacing * slope;
+    now_[i] = 0.5F * state.spacing * std::min(inverseStep * state.projection.image[i], gravity);
   });
 }
 
 void PressureSum::pressures(const StepState& state, std::vector<float>& out) const {
+  const double density = state.parameters.restDensity;
+  if (watched_ && state.takesPressure()) {
+    const std::vector<float>& pressure = state.projectedPressure;
+    const bool above = now_.size() == pressure.size();
+    out.resize(pressure.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = static_cast<float>(density * static_cast<double>(pressure[i] + (above ? now_[i] : 0)));
+    return;
+  }
   out.resize(now_.size());
-  double scale = state.parameters.restDensity;
-  if (!state.projects())
-    scale *= -static_cast<double>(state.supportRadius) * static_cast<double>(state.supportRadius) /
-             (static_cast<double>(state.timeStep) * static_cast<double>(state.timeStep));
-  std::transform(now_.begin(), now_.end(), out.begin(),
-                 [scale](float sum) { return static_cast<float>(scale * static_cast<double>(sum)); });
+  const double scale = -density * static_cast<double>(state.supportRadius) *
+                       static_cast<double>(state.supportRadius) /
+                       (static_cast<double>(state.timeStep) * static_cast<double>(state.timeStep));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<float>(scale * static_cast<double>(now_[i]));
 }
 
 }  // namespace migiwa

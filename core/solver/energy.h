@@ -74,10 +74,10 @@ double wallPush(const StepState& state);
 
 struct StepState;
 
-// With a projection it is rho0 phi / dt. That is zero at the centres of the outermost particles, half a
-// spacing below the surface that a pressure is zero at; so what is said of every particle is more by the
-// pressure that its own gradient adds on half a spacing, at most that of gravity: at rest rho0 g z again, and
-// nothing in free fall.
+// With a solver that has a pressure it is that; rho0 phi / dt with a projection. That is zero at the centres
+// of the outermost particles, half a spacing below the surface that a pressure is zero at; so what is said of
+// every particle is more by the pressure that its own gradient adds on half a spacing, at most that of
+// gravity: at rest rho0 g z again, and nothing in free fall.
 
 /// The pressure of each particle in a step. Off by default: with velocities from positions it is the sum over
 /// the iterations, which takes part in their stretching as positions do and costs a pass over the particles
@@ -92,14 +92,14 @@ class PressureSum {
   void begin(const StepState& state);
   /// An iteration that moves particles by the multipliers in `state`, stretched by `weight`.
   void iterate(const StepState& state, float weight);
-  /// A projection with its potential and, in `state.projection.image`, the length of the gradient.
+  /// A projection, with the length of its potential's gradient in `state.projection.image`.
   void project(const StepState& state);
   /// Pressure (Pa) of each particle in the step that `state` has just made; empty unless watched.
   void pressures(const StepState& state, std::vector<float>& out) const;
 
  private:
   bool watched_ = false;
-  /// Sums of lambda over the squared support radius (1), or p / rho0 of a projection (m^2/s^2).
+  /// Sums of lambda over the squared support radius (1), or what a projection's p / rho0 is more (m^2/s^2).
   std::vector<float> now_, before_;
 };
 

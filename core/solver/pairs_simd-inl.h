@@ -267,6 +267,13 @@ HWY_INLINE void forBlocks(const Float4* positions, const PairScale& scale, std::
   }
 }
 
+/// use(kernel) for the kernels whose own gradient moves particles.
+template <class Use>
+HWY_INLINE void withOwnGradient(KernelType kernel, const Use& use) {
+  if (kernel == KernelType::cubicSpline) return use(CubicSpline{});
+  use(WendlandC2{});
+}
+
 /// Three components of a vector quantity, a particle a lane.
 struct Vectors {
   PairVector x, y, z;

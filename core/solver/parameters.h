@@ -10,6 +10,17 @@
 
 namespace migiwa {
 
+/// How the fluid is kept from being compressed; core/solver/solvers.h has what does it.
+enum class SolverMethod { pbf, wcsph, pcisph, dfsph };
+inline constexpr std::array<std::string_view, 4> kSolverMethodNames{"pbf", "wcsph", "pcisph", "dfsph"};
+
+/// Of weakly compressible SPH.
+struct WcsphParameters {
+  double compression = 0.01;  ///< that the speed of sound is chosen for (unit: 1, range: [0.0001, 0.1])
+  double soundSpeed = 0;      ///< 0: by the compression and the speeds of the scene (unit: m/s)
+  double viscosity = 0.08;    ///< artificial, alpha (unit: 1, range: [0, 1])
+};
+
 /// How lambda becomes a displacement. METHOD: [FM] Eq. 10 is the short form of the constraint's gradient
 /// step.
 enum class PositionStep {
@@ -31,6 +42,8 @@ enum class Acceleration { chebyshev, none };
 inline constexpr std::array<std::string_view, 2> kAccelerationNames{"chebyshev", "none"};
 
 struct SolverParameters {
+  SolverMethod method = SolverMethod::pbf;
+  WcsphParameters wcsph;
   double timeStep = 0.005;  ///< a frame's step (unit: s, range: (0, 1])
   int substeps = 1;         ///< parts that a frame has at least (range: [1, 1000])
   double cfl = 0.4;  ///< support radii that the fastest particle may move in a substep; 0: no limit (unit: 1)
@@ -47,6 +60,30 @@ struct SolverParameters {
   /// Mean divergence, times the time step, that ends a projection (unit: 1, range: [0, 1))
   double divergenceTolerance = 2e-5;
   int maxPressureIterations = 50;  ///< of a projection (range: [1, 1000])
+
+  /// Whether velocities come from a pressure at the places where a step begins: always but in PBF from
+  /// positions.
+  bool takesPressure() const {
+    return method != SolverMethod::pbf || velocityStep == VelocityStep::projection;
+  }
+  /// Whether a step has iterations that take divergence out.
+  bool solvesDivergence() const {
+    return method == SolverMethod::dfsph || (method == SolverMethod::pbf && takesPressure());
+  }
+
+  /// Takes a method, and what goes with it: for all but PBF a kernel that serves density and forces
+  /// alike, and the least iterations and the errors that the publications ask for.
+  void takeMethod(SolverMethod with) {
+    const SolverParameters usual;
+    takeVelocities(usual.velocityStep);
+    method = with;
+    minIterations = usual.minIterations, maxIterations = usual.maxIterations;
+    divergenceTolerance = usual.divergenceTolerance;
+    if (with == SolverMethod::pbf) return;
+    kernel = KernelType::wendlandC2, supportRatio = 2.25, tolerance = 0.01;
+    if (with == SolverMethod::pcisph) minIterations = 3, maxIterations = 50;
+    if (with == SolverMethod::dfsph) maxIterations = 50, tolerance = 0.001, divergenceTolerance = 0.001;
+  }
 
   /// Takes velocities from there, and the kernel, the support ratio and the tolerance that go with it: for a
   /// projection a kernel that serves density and forces alike, and a tolerance that costs about an iteration

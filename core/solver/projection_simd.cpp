@@ -41,6 +41,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/solver/solvers.h"
 #include "core/solver/step.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -65,13 +66,6 @@ struct PotentialSums {
 
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
-
-/// use(kernel) for the kernels whose own gradient moves particles.
-template <class Use>
-HWY_INLINE void withOwnGradient(KernelType kernel, const Use& use) {
-  if (kernel == KernelType::cubicSpline) return use(CubicSpline{});
-  use(WendlandC2{});
-}
 
 /// One over the time in which less dense fluid comes together (1/s).
 inline float roomRate(const StepState& state) {

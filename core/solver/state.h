@@ -96,6 +96,7 @@ struct ProjectionBuffers {
   std::vector<float> inverseDiagonal;  ///< (1)
   std::vector<float> atWall;           ///< what a strain moves through a wall's share of the kernel (m^2/s)
   std::vector<float> residual, image;  ///< (m^2/s)
+  std::vector<Float4> velocity;        ///< that a pressure leads to (m/s), with the ghost's; see press.h
   /// Of the conjugate gradients, with the matrix times it (m^2/s).
   std::vector<float> direction, directionImage;
   std::vector<std::uint8_t> active;  ///< whether it has a part in the solve
@@ -120,7 +121,8 @@ struct FluidState {
   static constexpr std::uint32_t kNoWall = std::numeric_limits<std::uint32_t>::max();
 
   Particles particles;
-  /// p / rho0 (m^2/s^2) of the last projection, where the next begins; empty without one.
+  /// p / rho0 (m^2/s^2) of the last step, where the next may begin; empty without SolverParameters'
+  /// takesPressure().
   std::vector<float> projectedPressure;
   std::vector<WallSlot> wallSlots;
   std::vector<std::uint32_t> wallSlot;  ///< of each particle, or kNoWall
@@ -189,9 +191,12 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   float spacing = 0;              ///< (m)
   float supportRadius = 0;        ///< (m)
   RestingLattice lattice{};
-  float timeStep = 0;  ///< of this substep (s)
+  float timeStep = 0;    ///< of this substep (s)
+  float soundSpeed = 0;  ///< of weakly compressible SPH (m/s)
 
-  bool projects() const { return parameters.velocityStep == VelocityStep::projection; }
+  bool takesPressure() const { return parameters.takesPressure(); }
+  /// Whether the density constraint of PBF has a part in the step.
+  bool constrains() const { return parameters.method == SolverMethod::pbf; }
   /// Whether the walls' part of the density is added, rather than divided by gamma.
   bool addsWallDensity() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::added; }
   /// What the wall's push on particle i is over the pair gradient of its sample, but for the sign: lambda
@@ -199,8 +204,13 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   float wallPush(std::size_t i) const {
     return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
-  /// What the sum of the neighbours is divided by: gamma, and with a projection what fluid at rest has of it.
-  float densityGamma(float g) const { return projects() ? g * lattice.besideWalls(g) : g; }
+  /// What the sum of the neighbours is divided by: gamma, and with a pressure what fluid at rest has of it.
+  float densityGamma(float g) const { return takesPressure() ? g * lattice.besideWalls(g) : g; }
+  /// Its derivative with respect to gamma.
+  float densityGammaSlope(float g) const {
+    if (!takesPressure()) return 1;
+    return lattice.besideWalls(g) - g * (lattice.wallSlope + 2 * lattice.wallBend * (1 - g));
+  }
   /// Centres stay this far inside the fluid side (m).
   float wallMargin() const { return 0.5F * spacing; }
 };

@@ -18,15 +18,15 @@
 //      v
 //   velocity = (x* - x) / dt, position = x*, then effects on velocities
 //
-// With the velocity step "projection" the velocities do not come from the way that the constraint has moved
-// particles, but from a pressure, at the places where the step begins:
+// With the velocity step "projection", and with all solvers but PBF, the velocities do not come from the way
+// that the constraint has moved particles, but from a pressure, at the places where the step begins:
 //
 //   neighbours                     of the positions
 //   predict                        v* = the way that walls leave of (v + g dt) dt, over dt
 //   effects, gamma                 at the positions
-//   pressure                       v = v* - grad phi, free of divergence               (projection_simd.cpp)
+//   pressure                       v = v* - dt grad p / rho, by the solver             (solvers.h)
 //   move                           x* = x + v dt, walls keep x* on the fluid side
-//   lambda, position, ...          the loop above; velocities stay
+//   lambda, position, ...          PBF: the loop above; velocities stay
 //
 // A step that ends with a value that is not finite, or that walls leave no room, is refused and taken back.
 #include "core/solver/step.h"
@@ -38,6 +38,7 @@
 #include <utility>
 
 #include "core/solver/parameters.h"
+#include "core/solver/solvers.h"
 #include "core/solver/state.h"
 
 namespace migiwa::stages {
@@ -127,7 +128,6 @@ void moveAlong(StepState& state) {
   parallelEach(state.pool, particles.size(), [&](std::size_t i) {
     state.current[i].setXyz(particles.position[i].xyz() + state.timeStep * particles.velocity[i].xyz());
   });
-  projectAll(state);
 }
 
 void updatePositions(StepState& state) {
@@ -175,6 +175,10 @@ void takePositions(StepState& state) {
   const std::vector<Float4>& position = state.particles.position;
   resizeTight(state.current, position.size() + 1);
   std::copy(position.begin(), position.end(), state.current.begin());
+}
+
+const Solver& solverOf(const StepState& state) {
+  return kSolvers[static_cast<std::size_t>(state.parameters.method)];
 }
 
 void listNeighbours(StepState& state) {
@@ -229,7 +233,7 @@ void solvePrediction(StepState& state, EffectPipeline& effects, const Watch& wat
 }
 
 /// The velocities of the step by a pressure, and the positions that they lead to.
-void projectAndMove(StepState& state, EffectPipeline& effects, const Watch& watch) {
+void pressAndMove(StepState& state, EffectPipeline& effects, const Watch& watch) {
   const auto watched = [&](std::string_view stage) {
     if (watch) watch(stage);
   };
@@ -248,10 +252,17 @@ void projectAndMove(StepState& state, EffectPipeline& effects, const Watch& watc
   });
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
   watched("gamma");
-  state.times.time("pressure", [&] { stages::projectVelocities(state); });
+  state.times.time("pressure", [&] {
+    state.errors.clear();
+    state.iterations = state.pressureIterations = 0;
+    solverOf(state).press(state);
+  });
   watched("pressure");
+  state.times.time("move", [&] { stages::moveAlong(state); });
+  // PBF's own have their turn in its iterations.
+  if (!state.constrains()) effects.changePositions(state, 1, watch);
   state.times.time("move", [&] {
-    stages::moveAlong(state);
+    stages::projectAll(state);
     stages::takeVelocities(state);
     if (state.gammaMethod != nullptr && !state.boundary.empty()) stages::refreshGamma(state);
   });
@@ -262,8 +273,9 @@ void projectAndMove(StepState& state, EffectPipeline& effects, const Watch& watc
 void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& watch) {
   state.wallWork.clear();
   state.effectWork = 0;
-  if (state.projects()) {
-    projectAndMove(state, effects, watch);
+  if (state.takesPressure()) {
+    pressAndMove(state, effects, watch);
+    if (!state.constrains()) return;
     // What moves positions alone gives no speed, and so is no work.
     const WallWork work = state.wallWork;
     const double effectWork = state.effectWork;
@@ -281,7 +293,7 @@ void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& wat
 
 /// The solved positions, and the velocities that go with them; what was before is kept if `keep`.
 void takeSolution(StepState& state, bool keep) {
-  if (state.projects()) {
+  if (state.takesPressure()) {
     stages::updatePositions(state);
   } else {
     stages::updateVelocities(state, keep);
@@ -357,6 +369,12 @@ class FaultFinder {
 
 }  // namespace
 
+double longestStep(const StepState& state, const EffectPipeline& effects) {
+  const double ofEffects = effects.longestStep(state);
+  const auto ofSolver = solverOf(state).longestStep;
+  return ofSolver != nullptr ? std::min(ofEffects, ofSolver(state)) : ofEffects;
+}
+
 StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
   predictAndSolve(state, effects, {});
   StepRefusal refusal;
@@ -369,7 +387,7 @@ StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
     if (effects.changeVelocities(state, {}) || !state.guards) return refusal;
     refusal.notFinite = true;
     undoUpdate(state);
-  } else if (state.projects()) {
+  } else if (state.takesPressure()) {
     state.particles.velocity.swap(state.before.velocity);
   }
   undoPrediction(state);
@@ -385,7 +403,7 @@ StepFault findFault(StepState& state, EffectPipeline& effects) {
     finder.afterVelocities("velocity");
     effects.changeVelocities(state, [&](std::string_view effect) { finder.afterVelocities(effect); });
     undoUpdate(state);
-  } else if (state.projects()) {
+  } else if (state.takesPressure()) {
     state.particles.velocity.swap(state.before.velocity);
   }
   undoPrediction(state);

@@ -77,6 +77,9 @@ struct StepRefusal {
 /// in another order.
 StepRefusal advanceStep(StepState& state, EffectPipeline& effects);
 
+/// The longest step (s) over which the solver and all effects are stable.
+double longestStep(const StepState& state, const EffectPipeline& effects);
+
 /// What of a refused step was not finite first.
 struct StepFault {
   std::string stage;                      ///< the one that left it so, or the effect
@@ -160,16 +163,13 @@ IterationError computeLambda(StepState& state);
 /// Moves the predicted positions by [FM] Eq. 10 in the form that the parameters name, `weight` times as far
 /// from the positions of the previous iteration (1: Eq. 10 itself).
 void movePositions(StepState& state, float weight = 1);
-/// Takes the divergence out of the velocities where water is, at the positions state.current, by a pressure:
-/// see projection_simd.cpp. Needs neighbours and gamma there.
-void projectVelocities(StepState& state);
 /// Puts the particles near walls back on the fluid side.
 void projectNearWalls(StepState& state);
 /// The same for every particle: one that was far from the walls may have crossed one in a single move.
 void projectAll(StepState& state);
 /// v = (x* - x) / dt.
 void takeVelocities(StepState& state);
-/// x* = x + v dt, kept on the fluid side of the walls.
+/// x* = x + v dt.
 void moveAlong(StepState& state);
 /// x = x*, velocities stay. What was before is kept in state.before.
 void updatePositions(StepState& state);

@@ -74,9 +74,12 @@ void ReferenceSampler::sample(const Scene& scene, double time, std::span<const F
   const std::vector<GammaSample> reference = referenceGamma(scene, time, positions, pool);
   const std::vector<double> density = densities(scene, positions, pool);
   const auto support = static_cast<float>(scene.supportRadius());
+  const RestingLattice lattice = restingLattice(scene.solver.kernel, scene.solver.supportRatio);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto truth = static_cast<double>(reference[i].gamma);
-    const double compression = std::max(density[i] / truth - 1, 0.0);
+    // What fluid at rest has beside walls is no error to those that reckon with it.
+    const float atRest = scene.solver.takesPressure() ? lattice.besideWalls(reference[i].gamma) : 1;
+    const double compression = std::max(density[i] / (truth * static_cast<double>(atRest)) - 1, 0.0);
     densitySum_ += compression;
     densityMax_ = std::max(densityMax_, compression);
     ++particles_;

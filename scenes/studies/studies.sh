@@ -46,6 +46,22 @@ restStudy() {
     --until 3 --repeat 1 --out "$1"
 }
 
+# studyOfSolvers DIR SCENE SPACING UNTIL: every solver at three of its own settings.
+studyOfSolvers() {
+  "$migiwa" study "scenes/$2.json" --set "/particle_spacing=$3" --set /solver/min_iterations=2 \
+    --set /solver/max_iterations=50 \
+    --set /solver/velocity_step=positions --vary /solver/method=pbf,wcsph,pcisph,dfsph \
+    --vary /solver/wcsph/compression:/solver/tolerance=0.04:0.01,0.01:0.003,0.004:0.001 \
+    --until "$4" --threads 1 --repeat 3 --out "$1/${2##*/}"
+}
+
+# studiesOfSolvers DIR: dam break, still tank and standing wave.
+studiesOfSolvers() {
+  studyOfSolvers "$1" dam_break 0.08 2
+  studyOfSolvers "$1" still_tank 0.08 2.5
+  studyOfSolvers "$1" truth/standing_wave 0.04 4.6
+}
+
 # slimStudy DIR: degree and number of nodes of the bunny.
 slimStudy() {
   "$migiwa" study scenes/bunny.json --set /particle_spacing=0.1 --set /boundary/surfaces/0/tolerance=0 \

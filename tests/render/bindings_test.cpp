@@ -14,7 +14,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace bindings_test {
 
 constexpr int kWidth = 1280, kHeight = 720;
 
@@ -254,5 +254,5 @@ TEST_F(Bindings, AreListedInTheWindowAndByHelp) {
   EXPECT_FALSE(isListed());
 }
 
-}  // namespace
+}  // namespace bindings_test
 }  // namespace migiwa

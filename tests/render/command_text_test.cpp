@@ -17,7 +17,7 @@
 #include "tests/render/window_over_scene.h"
 
 namespace migiwa {
-namespace {
+namespace command_text_test {
 
 /// Words as a POSIX shell parts them, where there is nothing but single quotes and backslashes.
 std::vector<std::string> shellWords(const std::string& line) {
@@ -249,5 +249,5 @@ TEST(RenderOptionsOfTheWindow, AreRefusedWithTheirPlace) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace command_text_test
 }  // namespace migiwa

@@ -12,7 +12,7 @@
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
-namespace {
+namespace script_test {
 
 class Script : public ::testing::Test {
  protected:
@@ -165,5 +165,5 @@ TEST_F(Script, StandsBesideTheWindowAlone) {
             kBadInput);
 }
 
-}  // namespace
+}  // namespace script_test
 }  // namespace migiwa

@@ -16,7 +16,7 @@
 #include "tests/render/window_over_scene.h"
 
 namespace migiwa {
-namespace {
+namespace selection_test {
 
 class Selection : public WindowOverScene {
  protected:
@@ -219,5 +219,5 @@ TEST(FieldSpread, OfKnownValues) {
   EXPECT_EQ(spreadOf({}).count, 0U);
 }
 
-}  // namespace
+}  // namespace selection_test
 }  // namespace migiwa

@@ -1,0 +1,78 @@
+// Divergence-free SPH, METHOD: Bender & Koschier 2015. Two solves a step, at the places where it begins. The
+// first takes the divergence out of the velocities that the step before has left, the second keeps the
+// density that gravity and the rest would lead to:
+//
+//   d s_i / dt = 0 after the first,    s_i + dt d s_i / dt = 1 after the second,    p >= 0
+//
+// Both push by pressures that grow by what is left, p_i += (what is left) / (dt^2 alpha_i'), alpha' being
+// the sum of squared gradients of the density (press::stiffness). Deviations: pressures are summed up and
+// kept from below zero, where the paper corrects velocities by each iteration's alone; what has less than 0.9
+// of its density feels no divergence, where the paper counts neighbours, of which there are fewer beside
+// walls. The second solve begins with half the pressures of the step before (warm start; with all of them
+// water at rest trembles more), the first with none. The tolerances are of the mean errors.
+#include <algorithm>
+
+#include "core/solver/press.h"
+#include "core/solver/solvers.h"
+
+namespace migiwa {
+
+namespace {
+
+/// Of the pressures of the step before, where the second solve begins.
+constexpr float kWarm = 0.5F;
+/// Below it a particle is at the surface, or flies.
+constexpr float kInside = 0.9F;
+
+/// Lets pressures grow until the mean of error(i) > 0 is at most `tolerance`; returns the iterations.
+/// `error`: of the density that is left (1), from the rate in projection.residual.
+template <class Error>
+int solve(StepState& state, int least, int most, double tolerance, const Error& error) {
+  const auto count = static_cast<double>(std::max<std::size_t>(state.particles.size(), 1));
+  press::push(state);
+  for (int iterations = 0;; ++iterations) {
+    press::rate(state);
+    const double left = parallelSum(state.pool, state.particles.size(), [&](std::size_t i) {
+      return static_cast<double>(std::max(error(i), 0.0F));
+    });
+    if ((iterations >= least && left <= tolerance * count) || iterations >= most) return iterations;
+    parallelEach(state.pool, state.particles.size(), [&](std::size_t i) {
+      const float s = state.density[i], change = press::stiffness(state, state.projection.diagonal[i]);
+      state.projectedPressure[i] = std::max(state.projectedPressure[i] + s * s * change * error(i), 0.0F);
+    });
+    press::push(state);
+  }
+}
+
+}  // namespace
+
+void stages::pressFreeOfDivergence(StepState& state) {
+  const SolverParameters& parameters = state.parameters;
+  const std::size_t n = state.particles.size();
+  state.errors.push_back(press::measure(state));
+  ProjectionBuffers& buffers = state.projection;
+  // The first solve is of the velocities that the step before has left.
+  const Vec3f gain = state.timeStep * state.gravity;
+  buffers.potential.resize(n);
+  parallelEach(state.pool, n, [&](std::size_t i) {
+    state.previous[i] = Float4(Vec3f(state.previous[i].xyz() - gain));
+    buffers.potential[i] = kWarm * state.projectedPressure[i];
+    state.projectedPressure[i] = 0;
+  });
+  state.pressureIterations =
+      solve(state, 1, parameters.maxPressureIterations, parameters.divergenceTolerance, [&](std::size_t i) {
+        return state.density[i] < kInside ? 0.0F : state.timeStep * buffers.residual[i];
+      });
+  parallelEach(state.pool, n, [&](std::size_t i) {
+    state.previous[i] = Float4(Vec3f(buffers.velocity[i].xyz() + gain));
+    std::swap(buffers.potential[i], state.projectedPressure[i]);
+  });
+  state.iterations =
+      solve(state, parameters.minIterations, parameters.maxIterations, parameters.tolerance,
+            [&](std::size_t i) { return state.density[i] - 1 + state.timeStep * buffers.residual[i]; });
+  // What walls and wall friction see is the push of both.
+  parallelEach(state.pool, n, [&](std::size_t i) { state.projectedPressure[i] += buffers.potential[i]; });
+  press::take(state);
+}
+
+}  // namespace migiwa
