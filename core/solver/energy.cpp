@@ -106,7 +106,7 @@ void PressureSum::pressures(const StepState& state, std::vector<float>& out) con
   const double density = state.parameters.restDensity;
   if (watched_ && state.takesPressure()) {
     const std::vector<float>& pressure = state.projectedPressure;
-    const bool above = now_.size() == pressure.size();
+    const bool above = state.parameters.method == SolverMethod::pbf && now_.size() == pressure.size();
     out.resize(pressure.size());
     for (std::size_t i = 0; i < out.size(); ++i)
       out[i] = static_cast<float>(density * static_cast<double>(pressure[i] + (above ? now_[i] : 0)));
