@@ -19,7 +19,7 @@ namespace {
 constexpr int kCells = GammaGrid::kCells;
 /// What filling a grid takes in all, over the grid itself.
 constexpr double kFillingOverGrid = 4;
-constexpr double kMostBlocks = 256.0 * 1024 * 1024;
+constexpr double kMostGridBlocks = 256.0 * 1024 * 1024;
 
 [[noreturn]] void refuse(const std::string& place, double bytes) {
   constexpr double kGiB = 1024.0 * 1024 * 1024;
@@ -90,7 +90,7 @@ GammaGrid layOut(const Boundary& boundary, const BakeSettings& settings, ThreadP
   GammaGrid grid;
   grid.cell = settings.cell;
   grid.origin = settings.region.min.cast<float>();
-  if (const double blocks = blocksIn(settings); !(blocks < kMostBlocks))
+  if (const double blocks = blocksIn(settings); !(blocks < kMostGridBlocks))
     refuse(settings.place, sizeof(std::int32_t) * blocks);
   // The layout's own index of blocks, and those of the splines and the fluid's lattice.
   requireMemory(3 * sizeof(std::int32_t) * blocksIn(settings), "a grid of gamma", settings.place);

@@ -96,7 +96,7 @@ void writeGoldenHashes() {
 
 int main(int argc, char** argv) {
   if (argc == 2 && std::string_view(argv[1]) == "--update") {
-    migiwa::writeGoldenHashes();
+    migiwa::golden_hashes_test::writeGoldenHashes();
     return 0;
   }
   ::testing::InitGoogleTest(&argc, argv);

@@ -335,6 +335,18 @@ Violations checkChapters(const std::vector<SourceFile>& files) {
   return violations;
 }
 
+/// What is wrong with the namespace of a test file, which others are compiled together with; or nothing.
+std::string testNamespaceFault(const SourceFile& file, const std::vector<std::string>& lines) {
+  if (!file.path.starts_with("tests/") || !file.path.ends_with("_test.cpp")) return {};
+  const std::size_t name = file.path.rfind('/') + 1;
+  const std::string stem = file.path.substr(name, file.path.size() - 4 - name);
+  const auto has = [&](const std::string& line) {
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  if (has("namespace {")) return "names of a test file are not in an unnamed namespace";
+  return has("namespace " + stem + " {") ? std::string() : "no namespace " + stem + " for the file's names";
+}
+
 Violations checkHabits(const std::vector<SourceFile>& files) {
   // Written so that this file does not hold the words itself.
   static const std::regex unfinished(
@@ -348,6 +360,8 @@ Violations checkHabits(const std::vector<SourceFile>& files) {
     if (lines.size() > kMostLines)
       violations.push_back(file.path + ": " + std::to_string(lines.size()) + " lines, more than " +
                            std::to_string(kMostLines));
+    if (const std::string fault = testNamespaceFault(file, lines); !fault.empty())
+      violations.push_back(file.path + ": " + fault);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (std::regex_search(lines[i], unfinished))
         violations.push_back(at(file, i + 1) + ": a note about unfinished work: " + lines[i]);

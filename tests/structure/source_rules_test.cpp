@@ -133,6 +133,13 @@ TEST(Habits, NoFileIsTooLongOrUnfinished) {
   expect(checkHabits({file("cmake/a.cmake", "one\n# " + word + ": later\n")}), {"cmake/a.cmake:2"});
 }
 
+TEST(Habits, ATestFileHasANamespaceOfItsOwn) {
+  expectNone(checkHabits({file("tests/sph/a_test.cpp", "namespace a_test {\n}\n"),
+                          file("tests/sph/a.cpp", "namespace {\n}\n")}));
+  expect(checkHabits({file("tests/sph/a_test.cpp", "namespace {\n}\n")}), {"unnamed namespace"});
+  expect(checkHabits({file("tests/sph/a_test.cpp", "namespace b_test {\n}\n")}), {"no namespace a_test"});
+}
+
 TEST(Habits, WhatIsConstStaysSo) {
   const std::string cast = "auto& a = const_cast<A&>(b);\n";
   expect(checkHabits({file("core/scene/a.cpp", "\n" + cast)}), {"core/scene/a.cpp:2: a const_cast"});
