@@ -43,15 +43,28 @@ double soundSpeed(const Scene& scene, double given) {
   const WcsphParameters& own = scene.solver.wcsph;
   if (own.soundSpeed > 0) return own.soundSpeed;
   const Bounds all = scene.bounds();
+  const double strength = scene.gravity.norm();
   double fall = 0;
   const auto fallsFrom = [&](const Bounds& bounds) {
     if (bounds.empty() || all.empty()) return;
+    // Against gravity from the farthest corner of the fluid to that of the scene.
+    double gained = 0;
+    Vec3d corner;
     for (int axis = 0; axis < 3; ++axis) {
-      // Against gravity from the farthest side of the fluid to that of the scene.
       const double g = scene.gravity[axis];
-      const double way = g > 0 ? all.max[axis] - bounds.min[axis] : bounds.max[axis] - all.min[axis];
-      fall = std::max(fall, std::abs(g) * way);
+      corner[axis] = g > 0 ? bounds.min[axis] : bounds.max[axis];
+      gained += g * ((g > 0 ? all.max[axis] : all.min[axis]) - corner[axis]);
     }
+    // Planes have no bounds: straight down to the first.
+    double toPlane = std::numeric_limits<double>::infinity();
+    for (const auto& wall : scene.surfaces) {
+      if (!wall->bounds().empty()) continue;
+      Vec3f normal;
+      const auto distance = static_cast<double>(wall->distance(corner.cast<float>(), normal));
+      const double against = -scene.gravity.dot(normal.cast<double>());
+      if (against > 0) toPlane = std::min(toPlane, strength * strength * std::max(distance, 0.0) / against);
+    }
+    fall = std::max(fall, std::isfinite(toPlane) ? std::max(gained, toPlane) : gained);
   };
   for (const auto& source : scene.fluid) fallsFrom(source->bounds());
   for (const Emitter& emitter : scene.emitters) fallsFrom(emitter.bounds());

@@ -227,7 +227,9 @@ void Simulation::advanceFrame() {
     double parts = std::max(wanted, 1.0);
     if (!(wanted <= most)) {
       state.statistics.note("cfl_not_met", state.statistics.steps,
-                            "the fastest particle would need more than " + std::to_string(kMostSubsteps) +
+                            std::string("the fastest particle") +
+                                (parameters.method == SolverMethod::wcsph ? ", or sound," : "") +
+                                " would need more than " + std::to_string(kMostSubsteps) +
                                 " substeps a frame; a smaller time_step helps");
       parts = std::max(most, 1.0);
     }

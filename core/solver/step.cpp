@@ -390,6 +390,9 @@ StepRefusal advanceStep(StepState& state, EffectPipeline& effects) {
   } else if (state.takesPressure()) {
     state.particles.velocity.swap(state.before.velocity);
   }
+  // What the next step, or one from a save, begins with.
+  for (float& pressure : state.projectedPressure)
+    if (!std::isfinite(pressure)) pressure = 0;
   undoPrediction(state);
   return refusal;
 }

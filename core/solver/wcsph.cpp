@@ -10,7 +10,7 @@
 // that its pairs are antisymmetric.
 //
 // The step is symplectic Euler, whose velocities are those of a leapfrog. Sound may cross 0.4 support radii
-// in a step, their CFL rule; 0.6 are still stable.
+// in a step, twice what their rule allows, whose length is half the support; 0.6 are still stable.
 #include <algorithm>
 
 #include "core/solver/press.h"

@@ -183,6 +183,32 @@ TEST(SolverSteps, OfPcisphAreTenTimesAsLongAsThoseOfWcsph) {
   EXPECT_GE(steps(SolverMethod::wcsph), 10 * steps(SolverMethod::pcisph));
 }
 
+// Sound at a compression of 1 % is ten times as fast as the fall, and goes 0.4 support radii in a step. A
+// fall askew is along all axes, and a plane is no part of the scene's bounds.
+TEST(SolverSteps, OfWcsphAreThoseOfTheWholeFall) {
+  constexpr double kFrame = 0.04, kGravity = 9.81;
+  const auto steps = [&](Scene scene) {
+    scene.solver.takeMethod(SolverMethod::wcsph);
+    scene.solver.timeStep = kFrame;
+    Simulation simulation(scene, 1);
+    simulation.advanceFrame();
+    return static_cast<double>(simulation.statistics().steps);
+  };
+  const auto least = [&](double way) {
+    return kFrame * 10 * std::sqrt(2 * kGravity * way) / (0.4 * 2.25 * kSpacing);
+  };
+  Scene askew = emptyScene();
+  addFluid(askew, Vec3d::Zero(), {0.3, 0.3, 0.3});
+  addTank(askew, Vec3d::Zero(), {0.3, 0.3, 0.3});
+  askew.gravity = -kGravity / std::sqrt(3) * Vec3d::Ones();
+  EXPECT_GE(steps(askew), least(0.3 * std::sqrt(3)));
+  Scene onPlane = emptyScene();
+  addFluid(onPlane, {0, 1, 0}, {0.3, 1.3, 0.3});
+  onPlane.surfaces.push_back(std::make_shared<Plane>(Vec3d::Zero(), Vec3d::UnitY()));
+  onPlane.gravity = {0, -kGravity, 0};
+  EXPECT_GE(steps(onPlane), least(1.3));
+}
+
 /// Jittered water that is squeezed into the corner of a box, and what solvers find of it.
 class SqueezedWater {
  public:
