@@ -85,6 +85,14 @@ void requirePlace(const RenderOptions& options) {
   beside(script && film, "--script", "expected it or --film, found both");
   beside(script && !options.times.empty(), "--script", "expected \"play_to\" in it in place of --times");
   beside(script && !options.compare.empty(), "--script", "expected it or --compare, found both");
+  const auto inScript = [&](bool given, const std::string& option) {
+    beside(script && given, "--script",
+           "expected its events to do what " + option + " does, found " + option);
+  };
+  inScript(!options.changes.empty(), "--set-at");
+  inScript(options.hideWalls, "--hide-walls");
+  inScript(!options.section.plane.empty(), "--plane");
+  inScript(!options.section.normal.empty(), "--normal");
   beside(!film && options.fps.has_value(), "--fps", "expected --film beside it, found none");
   beside(!film && options.from.has_value(), "--from", "expected --film beside it, found none");
   beside(!film && options.to.has_value(), "--to", "expected --film beside it, found none");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -110,6 +111,8 @@ class ScriptEvent {
   std::string text(std::string_view key) const {
     if (!json_.contains(key) || !json_.at(key).is_string())
       refuse("a text in \"" + std::string(key) + "\"", found(key));
+    if (json_.at(key).get_ref<const std::string&>().empty())
+      refuse("a text of at least one letter in \"" + std::string(key) + "\"", "an empty one");
     return json_.at(key).get<std::string>();
   }
   /// `otherwise` where the event has none.
@@ -180,6 +183,27 @@ class ScriptEvent {
   const EventKind* kind_ = nullptr;
 };
 
+/// Where the entries of a text begin that is a JSON array (bytes).
+std::vector<std::size_t> beginsOfEntries(std::string_view text) {
+  std::vector<std::size_t> begins;
+  int depth = 0;
+  bool quoted = false, next = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (next && std::string_view(" \t\r\n]").find(c) == std::string_view::npos) {
+      begins.push_back(k);
+      next = false;
+    }
+    if (quoted && c == '\\') ++k;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth == 1 && (c == '[' || c == ',') && (c == ',' || begins.empty())) next = true;
+  }
+  return begins;
+}
+
 /// Throws what can be told before anything is done.
 void checkEvent(const ScriptEvent& event) {
   const std::string_view kind = event.kind();
@@ -200,8 +224,8 @@ void checkEvent(const ScriptEvent& event) {
   if (kind == "play_to") event.number("play_to", 0, kLongestRun);
   if (kind == "wait") event.number("wait", 0, kLongestWait);
   if (kind == "wait_for" || kind == "wait_while") event.number("within", 0, kLongestWait, kUsualWait);
-  if (kind == "picture" && !event.text().ends_with(".png"))
-    event.refuse("a name that ends in .png", "\"" + event.text() + "\"");
+  if (kind == "picture" && (!event.text().ends_with(".png") || event.text().find('/') != std::string::npos))
+    event.refuse("a name without a folder that ends in .png", "\"" + event.text() + "\"");
   event.held();
 }
 
@@ -317,6 +341,10 @@ class ScriptedWindow {
     SimulationThread& simulation = window_.simulation();
     settle();
     simulation.pause();
+    const TimeLineView line = simulation.status().line;
+    if (time < line.time - 0.5 * window_.viewer().settings().solver.timeStep)
+      event.refuse("a time at or after that of now, " + formatNumber("%g s", line.time),
+                   formatNumber("%g s", time));
     for (RunStatus run = simulation.status();; run = simulation.status()) {
       const double step = window_.viewer().settings().solver.timeStep;
       if (run.stopped)
@@ -366,9 +394,11 @@ void runScript(const std::filesystem::path& script, const RenderJob& job, const 
   if (!document.root.is_array())
     throw InputError(script.string(), "expected a list of events, found " + describeJson(document.root));
   std::vector<ScriptEvent> events;
+  const std::vector<std::size_t> offsets = beginsOfEntries(text);
+  std::ptrdiff_t line = 1, from = 0;
   for (std::size_t k = 0; k < document.root.size(); ++k) {
-    const std::size_t at = offsetOf(text, Json::json_pointer("/" + std::to_string(k)));
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const auto at = static_cast<std::ptrdiff_t>(offsets.at(k));
+    line += std::count(text.begin() + std::exchange(from, at), text.begin() + at, '\n');
     collect([&] {
       events.emplace_back(script.string() + ":" + std::to_string(line) + ": event " + std::to_string(k + 1),
                           document.root[k]);

@@ -190,7 +190,7 @@ struct SelectionModel {
   std::string fileName = "particles.csv";
   std::string note{};                 ///< one line on what became of the last table
   bool shown = false;                 ///< its panel was open in the last frame
-  std::size_t all = 0;                ///< particles in the frame
+  std::size_t here = 0, all = 0;      ///< of `ids`, and of all, those in the frame
   std::optional<FieldSpread> spread;  ///< of those of `ids` that are still there; nothing: not known
 };
 

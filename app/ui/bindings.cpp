@@ -228,6 +228,8 @@ void bindingsWindow(bool& open, const Rect& area) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse |
                        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
+    // Where there is less room than the lists are wide, lines break.
+    ImGui::PushTextWrapPos(static_cast<float>(area.width) - 4 * margin - ImGui::GetStyle().ScrollbarSize);
     // Both lists are of one width.
     if (ImGui::BeginTable("bindings", 2, ImGuiTableFlags_SizingFixedFit)) {
       rows(kKeyBindings);
@@ -238,6 +240,7 @@ void bindingsWindow(bool& open, const Rect& area) {
       ImGui::EndTable();
     }
     faintText("While text is being typed, keys belong to it.");
+    ImGui::PopTextWrapPos();
   }
   ImGui::End();
   ImGui::PopStyleColor(2);

@@ -35,7 +35,9 @@ void commandWindow(CommandModel& model, const Rect& area, const Fonts& fonts) {
     if (ImGui::Button("Copy again")) model.copy = true;
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
+    ImGui::PushTextWrapPos(0);
     faintText("It is on the clipboard, and draws this picture without a window.");
+    ImGui::PopTextWrapPos();
   }
   ImGui::End();
   ImGui::PopStyleColor(2);

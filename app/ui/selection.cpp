@@ -48,8 +48,7 @@ void selectionPanel(PanelModel& model) {
   SelectionModel& selection = *model.selection;
   selection.shown = true;
   rowLabel("Selected");
-  ImGui::TextUnformatted(
-      (groupedDigits(selection.ids.size()) + " of " + groupedDigits(selection.all)).c_str());
+  ImGui::TextUnformatted((groupedDigits(selection.here) + " of " + groupedDigits(selection.all)).c_str());
   const float width = buttonWidth(2);
   const char* const tool = selection.tool ? "Drag over them" : "Select";
   ImGui::BeginDisabled(model.view.water);

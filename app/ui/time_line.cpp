@@ -120,13 +120,13 @@ void timeLineStrip(PanelModel& model, ImVec2 corner, ImVec2 size) {
   ImGui::SetCursorPos({start.x + shift, y});
   const float top = ImGui::GetCursorScreenPos().y;
   ImDrawList* draw = ImGui::GetWindowDrawList();
-  const Ticks ticks = roundTicks(scale.from, scale.until, 8);
-  const std::string format = "%." + std::to_string(ticks.decimals) + "f s";
-  for (const double value : ticks.values) {
-    const std::string label = formatNumber(format.c_str(), value);
-    const float wide = ImGui::CalcTextSize(label.c_str()).x;
-    const float x = std::clamp(scale.at(value) - 0.5F * wide, scale.left, scale.left + scale.width - wide);
-    draw->AddText({std::round(x), top}, ImGui::GetColorU32(ImGuiCol_TextDisabled), label.c_str());
+  const auto [values, labels] =
+      labelledTicks({scale.from, scale.until}, 8, scale.width, 0, ImGui::GetFont(), " s");
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const float wide = ImGui::CalcTextSize(labels[k].c_str()).x;
+    const float x =
+        std::clamp(scale.at(values[k]) - 0.5F * wide, scale.left, scale.left + scale.width - wide);
+    draw->AddText({std::round(x), top}, ImGui::GetColorU32(ImGuiCol_TextDisabled), labels[k].c_str());
   }
   ImGui::Dummy({1, std::round(kAxis * text) - 2});
   ImGui::End();

@@ -99,7 +99,11 @@ void section(const char* title, bool open, ImFont* bold, PanelModel& model, cons
   ImGui::PushFont(bold);
   const bool shown = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   ImGui::PopFont();
-  if (shown) panel(model);
+  if (!shown) return;
+  // Widgets of two panels may have one name.
+  ImGui::PushID(title);
+  panel(model);
+  ImGui::PopID();
 }
 
 }  // namespace

@@ -109,6 +109,28 @@ float textWidth(ImFont* font, const std::string& text) {
 
 }  // namespace
 
+LabelledTicks labelledTicks(const std::array<double, 2>& range, int most, float width, float beyond,
+                            ImFont* font, const char* unit) {
+  constexpr int kFewest = 2;
+  LabelledTicks result;
+  for (int wanted = most; wanted >= kFewest; --wanted) {
+    const Ticks ticks = roundTicks(range[0], range[1], wanted);
+    const bool tiny = ticks.decimals > 4 && std::max(std::abs(range[0]), std::abs(range[1])) < 1e-2;
+    const std::string format = tiny ? "%.4g" : "%." + std::to_string(ticks.decimals) + "f";
+    result = {ticks.values, {}};
+    float widest = 0;
+    for (const double value : ticks.values) {
+      result.labels.push_back(formatNumber(format.c_str(), value) + unit);
+      widest = std::max(widest, textWidth(font, result.labels.back()));
+    }
+    if (ticks.values.size() < 2) break;
+    const auto apart = static_cast<float>((ticks.values[1] - ticks.values[0]) / (range[1] - range[0]));
+    const float pushed = std::max(0.5F * widest - beyond, 0.0F);  // towards their neighbours, at the ends
+    if (widest + pushed + 0.3F * font->FontSize <= apart * width) break;
+  }
+  return result;
+}
+
 void drawCaption(const Caption& caption, const Rect& area, const Fonts& fonts) {
   const float size = fonts.regular->FontSize;
   const float gap = std::round(0.7F * size), line = std::round(1.32F * size),
@@ -193,17 +215,15 @@ void drawLegend(const ColorFieldInfo& field, const std::array<double, 2>& range,
   draw->AddText(fonts.regular, size, {bar.x, bar.y - line + 1}, theme::kInk, label.c_str());
   drawMap(draw, colors, bar, barWidth, barHeight);
 
-  const Ticks ticks = roundTicks(range[0], range[1], 6);
-  const std::string format = "%." + std::to_string(ticks.decimals) + "f";
-  for (const double value : ticks.values) {
-    const double share = (value - range[0]) / (range[1] - range[0]);
+  const auto [values, labels] = labelledTicks(range, 6, barWidth, padding - 2, fonts.regular);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double share = (values[k] - range[0]) / (range[1] - range[0]);
     const float x = std::floor(bar.x + static_cast<float>(share) * (barWidth - 1));
     draw->AddRectFilled({x, bar.y + barHeight}, {x + 1, bar.y + barHeight + tickLength}, theme::kFaintInk);
-    const std::string text = formatNumber(format.c_str(), value);
-    const float width = fonts.regular->CalcTextSizeA(size, 1e6F, 0, text.c_str()).x;
+    const float width = textWidth(fonts.regular, labels[k]);
     const float left = std::clamp(x - 0.5F * width, corner.x + 2, end.x - width - 2);
     draw->AddText(fonts.regular, size, {std::round(left), bar.y + barHeight + tickLength}, theme::kInk,
-                  text.c_str());
+                  labels[k].c_str());
   }
 }
 

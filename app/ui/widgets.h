@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <imgui.h>
 
@@ -115,7 +116,18 @@ int legendHeight(const Fonts& fonts);
 void drawLegend(const ColorFieldInfo& field, const std::array<double, 2>& range, const ColorMap& colors,
                 const Rect& area, const Fonts& fonts);
 
-// What the panels' plots have in common.
+// What axes have in common.
+
+/// Round values of a range, with their labels.
+struct LabelledTicks {
+  std::vector<double> values;
+  std::vector<std::string> labels;
+};
+
+/// As many, up to `most`, as stand apart along an axis of that width, `beyond` whose ends they may reach so
+/// far (pixels).
+LabelledTicks labelledTicks(const std::array<double, 2>& range, int most, float width, float beyond,
+                            ImFont* font, const char* unit = "");
 
 /// A grid line at the height y from `left` to `right` (pixels), with its label to the left of it.
 void gridLine(ImDrawList* draw, float left, float right, float y, const std::string& label);

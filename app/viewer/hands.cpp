@@ -55,7 +55,17 @@ void Hands::press(Key key, const Held& held) {
 
 void Hands::type(const std::string& text) {
   InputState input;
-  for (const char c : text) input.characters.push_back(static_cast<unsigned char>(c));
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    // UTF-8: the first byte of a letter has as many leading ones as the letter has bytes.
+    if ((byte & 0xC0U) == 0x80U && !input.characters.empty())
+      input.characters.back() = input.characters.back() << 6U | (byte & 0x3FU);
+    else
+      input.characters.push_back(byte < 0x80U ? byte
+                                              : byte & (byte < 0xE0U   ? 0x1FU
+                                                        : byte < 0xF0U ? 0xFU
+                                                                       : 7U));
+  }
   frame_(input);
   frame_(InputState{});
 }

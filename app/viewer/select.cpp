@@ -61,8 +61,10 @@ void Viewer::measureSelection(const FrameView& frame) {
   model.all = frame.positions.size();
   model.spread.reset();
   if (!std::exchange(model.shown, false)) return;
+  const std::vector<std::size_t> places = selectedIn(frame, model.ids);
+  model.here = model.ids.empty() ? 0 : places.size();
   std::vector<double> values;
-  for (const std::size_t place : selectedIn(frame, model.ids))
+  for (const std::size_t place : places)
     values.push_back(fieldValue(frame, place, model.field, scene_.origin));
   model.spread = spreadOf(values);
 }

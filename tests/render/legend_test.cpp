@@ -1,10 +1,12 @@
 // The legend against the colour map itself: its bar has to show every colour, low to high.
 #include <cmath>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "app/platform/context.h"
 #include "app/viewer/viewer.h"
+#include "tests/render/shown_text.h"
 #include "tests/render/test_scene.h"
 
 namespace migiwa {
@@ -60,6 +62,34 @@ TEST(LegendTest, ASceneMayFixTheRange) {
   const Viewer viewer(scene, {}, {1, false, false});
   EXPECT_EQ(viewer.colorRange(scene.view.color), (std::array<double, 2>{0.9, 1.1}));
   EXPECT_NE(viewer.colorRange(ColorField::gamma), (std::array<double, 2>{0.9, 1.1}));
+}
+
+TEST(LegendTest, NumbersStandApartAndAreThoseOfTheRange) {
+  const auto context = makeEglContext();
+  const FrameSnapshot frame = frameOf({}, 0.1F);
+  for (const std::array<double, 2>& range :
+       {std::array{0.6, 1.2}, std::array{0.0, 0.001}, std::array{-2e-4, 1.1e-3}, std::array{0.0, 3e-7},
+        std::array{1.0, 1.00002}, std::array{0.0, 2.3e7}, std::array{-1.0, -0.99}}) {
+    Scene scene = smallScene();
+    scene.view.hasColorRange = true;
+    scene.view.colorRange = range;
+    Viewer viewer(scene, {}, {1, false, false});
+    viewer.takePicture(frame.view(), RunStatus{}, 1280, 720);
+    const std::string text = shownText();
+    std::istringstream words(text.substr(text.rfind("/?") + 3));
+    double before = -INFINITY;
+    int count = 0;
+    for (std::string word; words >> word; ++count) {
+      std::size_t read = 0;
+      const double value = std::stod(word, &read);
+      EXPECT_EQ(read, word.size()) << text;
+      EXPECT_GT(value, before) << text;
+      EXPECT_GE(value, range[0] - 1e-9) << text;
+      EXPECT_LE(value, range[1] + 1e-9) << text;
+      before = value;
+    }
+    EXPECT_GE(count, 2) << text;
+  }
 }
 
 }  // namespace legend_test

@@ -6,6 +6,7 @@
 #include "tests/render/hands.h"
 #include "tests/render/image_compare.h"
 #include "tests/render/test_scene.h"
+#include "tests/render/window_over_scene.h"
 #include "tests/support/test_effects.h"
 
 namespace migiwa {
@@ -168,6 +169,44 @@ TEST_F(PanelsTest, PanelsAreHiddenByTheirKey) {
   const Image without = viewer_.picture();
   EXPECT_LT(with.pixel(310, 700)[0], 60) << "the dark panel";
   EXPECT_GT(without.pixel(310, 700)[0], 150) << "the scene";
+}
+
+class PanelsTogether : public WindowOverScene {
+ protected:
+  PanelsTogether() : WindowOverScene("panels_together") {}
+
+  void pressRow(const std::string& label) {
+    hands_.look();
+    const auto place = placeOfWidget(label);
+    ASSERT_TRUE(place) << shownText();
+    hands_.click((*place)[0], (*place)[1]);
+    hands_.look();
+  }
+};
+
+TEST_F(PanelsTogether, ListsOfTwoPanelsStayApart) {
+  open();
+  const int gammaMethod = window_->viewer().settings().boundary.gammaMethod;
+  pressRow("Method");
+  EXPECT_EQ(shownText().find("copula"), std::string::npos) << "methods of gamma among solvers";
+  hands_.clickOn("dfsph");
+  EXPECT_EQ(window_->viewer().settings().solver.method, SolverMethod::dfsph);
+  EXPECT_EQ(window_->viewer().settings().boundary.gammaMethod, gammaMethod);
+  pressRow("Method of γ");
+  EXPECT_EQ(shownText().find("pcisph"), std::string::npos) << "solvers among methods of gamma";
+}
+
+TEST_F(PanelsTogether, ButtonsOfOneNameAreEachPressed) {
+  open();
+  for (const char* const panel : {"Boundary", "Solver", "Energy", "Performance"}) hands_.clickOn(panel);
+  ASSERT_TRUE(placeOfText("Selected")) << shownText();
+  hands_.clickOn("Measure");
+  await([] { return placeOfText("Try").has_value(); });
+  const auto last = placeOfText("Clear", true);
+  ASSERT_NE(last, placeOfText("Clear")) << shownText();
+  hands_.click((*last)[0], (*last)[1]);
+  hands_.look();
+  EXPECT_TRUE(placeOfText("Measure")) << shownText();
 }
 
 }  // namespace panels_test

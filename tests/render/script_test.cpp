@@ -150,6 +150,13 @@ TEST_F(Script, RefusesWhatItCannotDoWithItsLineAndWhatThereIs) {
       << error_;
   EXPECT_NE(faultOf(R"({"press": "Play"})").find("expected a list of events"), std::string::npos) << error_;
   EXPECT_NE(faultOf("[{\"press\": }]").find("script.json:1:"), std::string::npos) << error_;
+  EXPECT_NE(faultOf(R"([{"press": ""}])").find("a text of at least one letter"), std::string::npos) << error_;
+  EXPECT_NE(faultOf(R"([{"picture": "none/a.png"}])").find("a name without a folder"), std::string::npos)
+      << error_;
+  EXPECT_NE(
+      faultOf(R"([{"play_to": 0.05}, {"play_to": 0.02}])").find("a time at or after that of now, 0.05 s"),
+      std::string::npos)
+      << error_;
   // All that can be told before is told before, and at once.
   const std::string two = faultOf("[{\"picture\": \"a.png\"},\n{\"key\": \"q\"},\n{\"wait\": -1}]");
   EXPECT_NE(two.find("script.json:2: event 2"), std::string::npos) << two;
@@ -157,7 +164,38 @@ TEST_F(Script, RefusesWhatItCannotDoWithItsLineAndWhatThereIs) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "faulty" / "a.png"));
 }
 
+TEST_F(Script, TypesLettersOfAnyAlphabet) {
+  const std::filesystem::path table = folder_ / "größe γ ∇.csv";
+  ASSERT_EQ(run(R"([
+    {"press": "File"},
+    {"key": "a", "control": true},
+    {"type": ")" + table.string() +
+                    R"("},
+    {"press": "CSV of particles"},
+    {"wait_for": "particles of 0.000 s in"}
+  ])",
+                "out"),
+            kDone)
+      << error_;
+  EXPECT_TRUE(std::filesystem::exists(table));
+}
+
+TEST_F(Script, TellsManyFaultsWithTheirLines) {
+  constexpr int kEvents = 20000;
+  std::string script = "[";
+  for (int k = 0; k < kEvents; ++k) script += std::string(k == 0 ? "" : ",") + "\n{\"type\": \"],[{\\\"\"}";
+  const std::string fault = faultOf(script + ",\n\n{\"key\": \"q\"}]");
+  EXPECT_NE(fault.find("script.json:20003: event 20001"), std::string::npos) << fault;
+}
+
 TEST_F(Script, StandsBesideTheWindowAlone) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--set-at", "0.1:/solver/tolerance=0.1"},
+        {"--hide-walls"},
+        {"--plane", "x=0.5"}}) {
+    EXPECT_EQ(run("[]", "x", words), kBadInput) << words.front();
+    EXPECT_NE(error_.find("found " + words.front()), std::string::npos) << error_;
+  }
   EXPECT_EQ(run("[]", "x", {"--times", "0"}), kBadInput);
   EXPECT_NE(error_.find("--script"), std::string::npos);
   EXPECT_EQ(run("[]", "x", {"--compare", "/solver/tolerance=0.1,0.2"}), kBadInput);
