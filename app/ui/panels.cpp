@@ -55,6 +55,20 @@ namespace {
 /// The panels below are not to be pushed out of sight.
 constexpr std::size_t kMostFaultsShown = 4;
 
+/// The text as far as it fits into the width (pixels), with an ellipsis for what does not.
+std::string fitted(std::string text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  const std::string ellipsis = "…";
+  const auto continues = [&] {
+    return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U;
+  };
+  while (!text.empty() && ImGui::CalcTextSize((text + ellipsis).c_str()).x > width) {
+    while (continues()) text.pop_back();
+    if (!text.empty()) text.pop_back();
+  }
+  return text + ellipsis;
+}
+
 }  // namespace
 
 void scenePanel(PanelModel& model) {
@@ -73,7 +87,8 @@ void scenePanel(PanelModel& model) {
   if (ImGui::Button("?")) model.commands.listKeys = true;
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("What keys and the mouse do");
   ImGui::SameLine();
-  faintText(editor.fileName);
+  faintText(fitted(editor.fileName, ImGui::GetContentRegionAvail().x));
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", editor.fileName.c_str());
   if (editor.faults.empty()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
   ImGui::TextWrapped("Not taken over, the scene before it goes on:");
