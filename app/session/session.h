@@ -161,6 +161,7 @@ class SimulationThread {
   void work();
   bool waitForWork(std::unique_lock<std::mutex>& lock);
   void applyRequests(std::unique_lock<std::mutex>& lock);
+  void giveCaptures(std::unique_lock<std::mutex>& lock);
   void applySettings(std::unique_lock<std::mutex>& lock);
   void applySave(std::unique_lock<std::mutex>& lock);
   void applyLoad(std::unique_lock<std::mutex>& lock);

@@ -203,7 +203,7 @@ void SimulationThread::work() {
         settle();
       }
       // Whatever else is asked for since is of the place that it is on its way to.
-      if (!travel_ && (!goal_ || sooner_ || reset_ || load_)) applyRequests(lock);
+      if (!travel_) applyRequests(lock);
       if (goal_) {
         depart(lock);
       } else if (travel_) {
@@ -258,12 +258,27 @@ void SimulationThread::stop(std::string why) {
   status_.trouble = std::move(why);
 }
 
+/// In the order in which each is of what the one before makes, again for what comes meanwhile, until nothing
+/// is left that is of the place of now.
 void SimulationThread::applyRequests(std::unique_lock<std::mutex>& lock) {
-  applySettings(lock);
-  if (save_) applySave(lock);
-  if (load_) applyLoad(lock);
-  if (watchWater_ && !hasWater_) publish(lock);
-  if (captures_.empty()) return;
+  while (!quit_ && (!goal_ || sooner_ || reset_ || load_)) {
+    if (reset_ || settings_) {
+      applySettings(lock);
+    } else if (save_) {
+      applySave(lock);
+    } else if (load_) {
+      applyLoad(lock);
+    } else if (!captures_.empty()) {
+      giveCaptures(lock);
+    } else if (watchWater_ && !hasWater_) {
+      publish(lock);
+    } else {
+      return;
+    }
+  }
+}
+
+void SimulationThread::giveCaptures(std::unique_lock<std::mutex>& lock) {
   std::vector<std::promise<StateImage>> captures = std::exchange(captures_, {});
   lock.unlock();
   for (std::promise<StateImage>& capture : captures) capture.set_value(StateImage::of(*simulation_));

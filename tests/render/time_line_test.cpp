@@ -228,6 +228,21 @@ TEST_F(TimeLineTest, ResetBeginsAnotherLine) {
   EXPECT_EQ(line.frame, 0);
 }
 
+TEST_F(TimeLineTest, AStateAskedForAfterAResetIsTheStart) {
+  open(smallScene());
+  std::mt19937 engine(3);
+  const Settings settings[] = {without(smallScene()), coarser(smallScene())};
+  for (int k = 0; k < 300; ++k) {
+    stepOn(1);
+    simulation_->apply(settings[k % 2]);
+    std::this_thread::sleep_for(std::chrono::microseconds(engine() % 500));
+    simulation_->reset();
+    arrive();
+    ASSERT_EQ(frame(), 0) << "round " << k;
+    ASSERT_EQ(frame_.info.time, 0) << "round " << k;
+  }
+}
+
 /// As a simulation's thread does it, on this one.
 TEST(TimeLineMemory, StaysWithinItsBoundAndEverythingInReach) {
   Simulation simulation(smallScene(), 1);
