@@ -115,7 +115,10 @@ void Simulation::State::configure(const Settings& settings) {
   }
   EffectPipeline changedEffects(changed.effects);
   const HealthLimits changedLimits = healthLimits(changed);
-  const double sound = soundSpeed(changed, std::max(changedLimits.given, wallSpeed(0, changed.duration)));
+  const double sound =
+      changed.solver.method == SolverMethod::wcsph
+          ? soundSpeed(changed, std::max(changedLimits.given, wallSpeed(0, changed.duration)))
+          : 0;
 
   // From here on nothing fails. What goes out of force ends with this function, the method before its walls.
   walls.keep();

@@ -267,6 +267,11 @@ HWY_INLINE void forBlocks(const Float4* positions, const PairScale& scale, std::
   }
 }
 
+/// rho/rho0 of a particle by its `sum` over neighbours and itself; `resting`: StepState::densityGamma().
+HWY_INLINE float correctedDensity(float sum, float resting, bool addsWall) {
+  return addsWall ? sum + 1 - resting : sum / resting;
+}
+
 /// use(kernel) for the kernels whose own gradient moves particles.
 template <class Use>
 HWY_INLINE void withOwnGradient(KernelType kernel, const Use& use) {

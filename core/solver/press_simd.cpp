@@ -56,7 +56,7 @@ void measurePressRange(StepState& state, std::size_t begin, std::size_t end) {
     const Float4 sums = sumLanes(x, y, z, covered);
     const float resting = state.densityGamma(state.gamma[i]);
     const float uncorrected = state.lattice.massRatio * (Shape::kValue * sums.w + Kernel::value(0));
-    const float density = added ? uncorrected + 1 - resting : uncorrected / resting;
+    const float density = correctedDensity(uncorrected, resting, added);
     Vec3f gradient = sums.xyz();
     if (state.wallSlot[i] != FluidState::kNoWall) gradient -= press::wallGradient(state, i, density);
     const float inverse = added ? 1 : 1 / resting;
@@ -138,7 +138,7 @@ void pressDensityRange(StepState& state, std::size_t begin, std::size_t end) {
     const float resting = state.densityGamma(state.gamma[i]);
     const float uncorrected =
         state.lattice.massRatio * (Shape::kValue * sumLanes(covered) + Kernel::value(0));
-    state.density[i] = added ? uncorrected + 1 - resting : uncorrected / resting;
+    state.density[i] = correctedDensity(uncorrected, resting, added);
   }
 }
 

@@ -139,8 +139,8 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     const Float4 flowRest = sumLanes(flowXy, flowXz, flowYz, hn::Zero(d));
     const Float4 sums = sumLanes(sumX, sumY, sumZ, hn::Zero(d));
     const float gamma = state.gamma[i], resting = state.densityGamma(gamma);
-    float density = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
-    density = added ? density + 1 - resting : density / resting;
+    const float sum = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
+    const float density = correctedDensity(sum, resting, added);
     const float toMoment = -slope * scale.inverseSquare;
     const InverseMoment inverse(toMoment * diagonal.xyz(), toMoment * rest.xyz());
     float compression = slope * flow.xyz().sum();
