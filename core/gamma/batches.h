@@ -70,6 +70,26 @@ inline constexpr std::size_t kEdgeGroup = 8;
 /// Fills one result for each edge, of whole groups.
 void integrate(KernelType kernel, std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results);
 
+/// A face of an upright block that faces a point, seen from there; lengths over the support radius. Its edges
+/// go first along the axis after its own (before it, on the lower side), then along the other.
+struct UprightFace {
+  float distance;  ///< of the point to its plane, in [0, 1)
+  float side;      ///< 1: it looks up its axis, -1: down
+  float axis;      ///< 0, 1, 2
+  float firstLow, firstHigh, otherLow, otherHigh;
+};
+/// The faces that the point of a sample sees: `count` from `first` on.
+struct FacesSeen {
+  std::uint32_t sample, first, count;
+};
+/// Adds the integrals along their edges and those of the cones behind them to the samples. `points` with more
+/// faces come first.
+void addUprightFaces(KernelType kernel, std::span<const UprightFace> faces, std::span<const FacesSeen> points,
+                     std::span<GammaSample> samples);
+
+/// Of the support radius: nearer than that to a plane, a corner of another facet lies on it.
+inline constexpr float kFacetRounding = 1e-5F;
+
 // gamma about thin upright blocks that stand apart as a point sees them: the sums of facets.cpp, without its
 // search for what hides what.
 

@@ -87,18 +87,21 @@ class BlockFacets final : public BlockGamma {
   void evaluate(std::span<const Float4> points, std::span<GammaSample> out,
                 std::vector<std::size_t>& others) const override {
     thread_local Scratch scratch;
-    scratch.sums.clear();
+    scratch.sums.clear(), scratch.faces.clear(), scratch.points.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
       out[i] = GammaSample{};
       if (!look(points[i].xyz(), scratch, out[i].distance)) {
         others.push_back(i);
-        continue;
+      } else if (scratch.tanks.empty()) {
+        addFaces(i, scratch, out[i]);
+      } else {
+        scratch.sums.addTanks(i, scratch.tanks, out[i]);
+        for (const SeenBlock& block : std::span(scratch.seen).first(scratch.count))
+          addBlock(i, block, scratch, out[i]);
       }
-      scratch.sums.addTanks(i, scratch.tanks, out[i]);
-      for (const SeenBlock& block : std::span(scratch.seen).first(scratch.count))
-        addBlock(i, block, scratch, out[i]);
     }
     scratch.sums.finish(kernel_, out);
+    addUprightFaces(kernel_, scratch.faces, mostFacesFirst(scratch), out);
     for (GammaSample& sample : out) range_.set(sample, sample.gamma);
   }
 
@@ -107,9 +110,14 @@ class BlockFacets final : public BlockGamma {
  private:
   static constexpr std::size_t kMostBlocks = 8;
 
+  static constexpr std::size_t kMostFaces = 6 * kMostBlocks;
+
   struct Scratch {
-    PolygonSums<Kernel> sums;
+    PolygonSums<Kernel> sums;  ///< of points that have tanks in reach
     std::vector<WallPiece> pieces;
+    // Of the other points:
+    std::vector<UprightFace> faces;
+    std::vector<FacesSeen> points, ordered;
     // Of one point:
     std::vector<HalfSpace> tanks;
     std::array<const UprightBlock*, kMostBlocks> blocks;
@@ -150,6 +158,7 @@ class BlockFacets final : public BlockGamma {
       rim = rim || rimInReach(block, p, inverse, scratch.tanks);
       SeenBlock& seen = scratch.seen[k];
       seen.low = inverse * (block.low - p), seen.high = inverse * (block.high - p);
+      if ((seen.high - seen.low).minCoeff() < kShortEdge) return false;
       if (!inside(seen, scratch.tanks)) return false;
       if (scratch.count == 1) break;
       seen.outline();
@@ -174,6 +183,43 @@ class BlockFacets final : public BlockGamma {
       const Vec3f nearest = (tank.normal.array() > 0).select(block.low, block.high);
       return tank.normal.dot(nearest) + tank.e > -kTouching;
     });
+  }
+
+  /// Appends the faces that the point of sample i sees, and has each that its foot is in take a whole plane.
+  static void addFaces(std::size_t i, Scratch& scratch, GammaSample& sample) {
+    const std::size_t first = scratch.faces.size();
+    for (const SeenBlock& block : std::span(scratch.seen).first(scratch.count)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) {
+          const float height = side < 0 ? block.low[axis] : -block.high[axis];
+          if (height < -kOnFacet || height >= 1) continue;
+          const float distance = std::max(height, 0.0F);
+          const int one = (axis + (side > 0 ? 1 : 2)) % 3, other = (axis + (side > 0 ? 2 : 1)) % 3;
+          const float beyond =
+              std::max({block.low[one], -block.high[one], block.low[other], -block.high[other]});
+          if (beyond > 0 && 1 - distance * distance - beyond * beyond <= 0) continue;
+          if (beyond <= 0) {
+            const Vec3f normal = side * Vec3f::Unit(axis);
+            PolygonSums<Kernel>::addPlane(normal, distance, 1, 1, sample);
+          }
+          scratch.faces.push_back({distance, side, static_cast<float>(axis), block.low[one], block.high[one],
+                                   block.low[other], block.high[other]});
+        }
+      }
+    }
+    const std::size_t count = scratch.faces.size() - first;
+    if (count > 0)
+      scratch.points.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first),
+                                static_cast<std::uint32_t>(count)});
+  }
+
+  static std::span<const FacesSeen> mostFacesFirst(Scratch& scratch) {
+    std::array<std::size_t, kMostFaces + 1> place{};  // of points with more faces than that
+    for (const FacesSeen& point : scratch.points)
+      for (std::size_t fewer = 0; fewer < point.count; ++fewer) ++place[fewer];
+    scratch.ordered.resize(scratch.points.size());
+    for (const FacesSeen& point : scratch.points) scratch.ordered[place[point.count]++] = point;
+    return scratch.ordered;
   }
 
   static void addBlock(std::size_t i, const SeenBlock& block, Scratch& scratch, GammaSample& sample) {

@@ -71,6 +71,8 @@ HWY_INLINE V logarithm(V x) {
 /// For the powers of r along an edge, r^2 = height^2 + inside^2 + t^2: M_k = integral of r^k dt, and
 /// L_k = integral of r^k over the angle, dangle = inside dt / (inside^2 + t^2). With D_k = [t r^k],
 ///   (k + 1) M_k = D_k + k (height^2 + inside^2) M_{k-2},   L_{k+2} = height^2 L_k + inside M_k.
+/// kOnPlane: height is 0, as at the side of a cone; its inverseAngle is not asked for.
+template <bool kOnPlane>
 struct Moments {
   std::array<V, kPowers> angles;
   V inverseAngle;  ///< height L_-1
@@ -81,17 +83,22 @@ struct Moments {
     const V least2 = hn::Max(hn::MulAdd(inside, inside, height2), hn::Set(d, kTiny));
     const V r0 = hn::Sqrt(hn::MulAdd(from, from, least2)), r1 = hn::Sqrt(hn::MulAdd(to, to, least2));
     angles[0] = hn::Sub(angleOf(inside, to), angleOf(inside, from));
-    inverseAngle = hn::Sub(angleOf(hn::Mul(inside, r1), hn::Mul(height, to)),
-                           angleOf(hn::Mul(inside, r0), hn::Mul(height, from)));
     const auto sum = [&](V t, V r) HWY_ATTR {  // t + r without cancellation
       return hn::IfThenElse(hn::Lt(t, hn::Zero(d)), hn::Div(least2, hn::Sub(r, t)), hn::Add(r, t));
     };
     const V logarithmic = logarithm(hn::Max(hn::Div(sum(to, r1), sum(from, r0)), hn::Set(d, 1.0F)));
-    angles[1] = hn::MulAdd(height, inverseAngle, hn::Mul(inside, logarithmic));
+    if constexpr (kOnPlane) {
+      angles[1] = hn::Mul(inside, logarithmic);
+    } else {
+      inverseAngle = hn::Sub(angleOf(hn::Mul(inside, r1), hn::Mul(height, to)),
+                             angleOf(hn::Mul(inside, r0), hn::Mul(height, from)));
+      angles[1] = hn::MulAdd(height, inverseAngle, hn::Mul(inside, logarithmic));
+    }
     V d0 = from, d1 = to;
     V before = logarithmic, now = hn::Sub(to, from);
     for (std::size_t k = 1; k + 1 < kPowers; ++k) {
-      angles[k + 1] = hn::MulAdd(height2, angles[k - 1], hn::Mul(inside, now));
+      angles[k + 1] =
+          kOnPlane ? hn::Mul(inside, now) : hn::MulAdd(height2, angles[k - 1], hn::Mul(inside, now));
       d0 = hn::Mul(d0, r0), d1 = hn::Mul(d1, r1);
       const auto power = static_cast<float>(k);
       const V next = hn::Mul(hn::Set(d, 1 / (power + 1)),
@@ -109,36 +116,164 @@ HWY_INLINE V sumOf(const std::array<float, kPowers>& terms, const std::array<V, 
   return sum;
 }
 
+/// EdgeIntegrals of several edges.
+struct EdgeSums {
+  V flux, area, pairArea;
+};
+
+/// Of edges whose fields are those of PolygonEdge. kOnPlane: height is 0, and flux is left out.
+template <bool kOnPlane>
+HWY_INLINE EdgeSums alongEdges(std::span<const EdgeTerms> own, std::span<const EdgeTerms> pair, V height,
+                               V side, V from, V to) {
+  const D d;
+  const V zero = hn::Zero(d), overFour = hn::Set(d, 0.25F / kPiF), overTwo = hn::Set(d, 0.5F / kPiF);
+  const V inside = hn::Abs(side);
+  const V least2 = hn::MulAdd(inside, inside, hn::Mul(height, height));
+  V flux = zero, area = zero, pairArea = zero;
+  const std::size_t shells = std::max(own.size(), pair.size());
+  for (std::size_t shell = 0; shell < shells; ++shell) {
+    V start = from, end = to;
+    if (shell > 0) {
+      const V radius = hn::Set(d, own[shell].radius);
+      const V half = hn::Sqrt(hn::Max(hn::Sub(hn::Mul(radius, radius), least2), zero));
+      start = hn::Min(hn::Max(from, hn::Neg(half)), half), end = hn::Min(hn::Max(to, hn::Neg(half)), half);
+    }
+    const Moments<kOnPlane> moments(height, inside, start, end);
+    const EdgeTerms& terms = own[shell];
+    if constexpr (!kOnPlane)
+      flux = hn::Add(flux, hn::MulAdd(hn::Set(d, terms.inverse), moments.inverseAngle,
+                                      hn::Mul(height, sumOf(terms.flux, moments.angles))));
+    area = hn::Add(area, sumOf(terms.area, moments.angles));
+    if (!pair.empty()) pairArea = hn::Add(pairArea, sumOf(pair[shell].area, moments.angles));
+  }
+  if (pair.empty()) pairArea = area;
+  const auto outside = hn::Lt(side, zero);
+  const auto turned = [&](V a) HWY_ATTR { return hn::IfThenElse(outside, hn::Neg(a), a); };
+  return {turned(hn::Mul(flux, overFour)), turned(hn::Mul(area, overTwo)),
+          turned(hn::Mul(pairArea, overTwo))};
+}
+
 void edgesBatch(std::span<const EdgeTerms> own, std::span<const EdgeTerms> pair,
                 std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results) {
   const D d;
-  const V zero = hn::Zero(d), overFour = hn::Set(d, 0.25F / kPiF), overTwo = hn::Set(d, 0.5F / kPiF);
   for (std::size_t k = 0; k < edges.size(); k += hn::Lanes(d)) {
     V height, side, from, to;
     hn::LoadInterleaved4(d, &edges[k].height, height, side, from, to);
-    const V inside = hn::Abs(side);
-    const V least2 = hn::MulAdd(inside, inside, hn::Mul(height, height));
-    V flux = zero, area = zero, pairArea = zero;
-    const std::size_t shells = std::max(own.size(), pair.size());
-    for (std::size_t shell = 0; shell < shells; ++shell) {
-      V start = from, end = to;
-      if (shell > 0) {
-        const V radius = hn::Set(d, own[shell].radius);
-        const V half = hn::Sqrt(hn::Max(hn::Sub(hn::Mul(radius, radius), least2), zero));
-        start = hn::Min(hn::Max(from, hn::Neg(half)), half), end = hn::Min(hn::Max(to, hn::Neg(half)), half);
-      }
-      const Moments moments(height, inside, start, end);
-      const EdgeTerms& terms = own[shell];
-      flux = hn::Add(flux, hn::MulAdd(hn::Set(d, terms.inverse), moments.inverseAngle,
-                                      hn::Mul(height, sumOf(terms.flux, moments.angles))));
-      area = hn::Add(area, sumOf(terms.area, moments.angles));
-      if (!pair.empty()) pairArea = hn::Add(pairArea, sumOf(pair[shell].area, moments.angles));
+    const EdgeSums sums = alongEdges<false>(own, pair, height, side, from, to);
+    hn::StoreInterleaved4(sums.flux, sums.area, sums.pairArea, hn::Zero(d), d, &results[k].flux);
+  }
+}
+
+/// What faces add to samples, a sample a lane.
+struct LaneSums {
+  V gamma;
+  std::array<V, 3> gradient, pairGradient;
+
+  /// Subtracts from the components of the gradients along an axis that differs from lane to lane.
+  HWY_INLINE void subtract(V axis, V own, V pair) {
+    const D d;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto along = hn::Eq(axis, hn::Set(d, static_cast<float>(k)));
+      gradient[k] = hn::Sub(gradient[k], hn::IfThenElseZero(along, own));
+      pairGradient[k] = hn::Sub(pairGradient[k], hn::IfThenElseZero(along, pair));
     }
-    if (pair.empty()) pairArea = area;
-    const auto outside = hn::Lt(side, zero);
-    const auto turned = [&](V a) HWY_ATTR { return hn::IfThenElse(outside, hn::Neg(a), a); };
-    hn::StoreInterleaved4(turned(hn::Mul(flux, overFour)), turned(hn::Mul(area, overTwo)),
-                          turned(hn::Mul(pairArea, overTwo)), zero, d, &results[k].flux);
+  }
+};
+
+/// Out of reach.
+constexpr UprightFace kNoFace{2, 1, 0, 0, 0, 0, 0};
+
+/// Fields of UprightFace, a face a lane.
+struct LaneFaces {
+  static constexpr float UprightFace::*kFields[] = {
+      &UprightFace::distance,  &UprightFace::side,     &UprightFace::axis,     &UprightFace::firstLow,
+      &UprightFace::firstHigh, &UprightFace::otherLow, &UprightFace::otherHigh};
+  alignas(32) float fields[std::size(kFields)][kEdgeGroup] = {};
+
+  HWY_INLINE void set(std::size_t lane, const UprightFace& face) {
+    for (std::size_t k = 0; k < std::size(kFields); ++k) fields[k][lane] = face.*kFields[k];
+  }
+  HWY_INLINE V at(std::size_t field) const { return hn::Load(D(), fields[field]); }
+};
+
+/// PolygonSums::add(), open and in front of the point, for rectangles along the axes.
+HWY_INLINE void addFaces(std::span<const EdgeTerms> own, std::span<const EdgeTerms> pair,
+                         const LaneFaces& faces, LaneSums& sums) {
+  const D d;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  const V distance = faces.at(0), side = faces.at(1), axis = faces.at(2);
+  const V low[] = {faces.at(3), faces.at(5)}, high[] = {faces.at(4), faces.at(6)};
+  // Counter-clockwise as the point sees it: first along the axis after its own, or before it.
+  const V three = hn::Set(d, 3.0F), ahead = hn::Add(axis, hn::Add(side, three));
+  const V first = hn::IfThenElse(hn::Ge(ahead, hn::Set(d, 6.0F)), hn::Sub(ahead, hn::Set(d, 6.0F)),
+                                 hn::IfThenElse(hn::Ge(ahead, three), hn::Sub(ahead, three), ahead));
+  const V across[] = {hn::Sub(three, hn::Add(axis, first)), first};
+  const V height2 = hn::Sub(one, hn::Mul(distance, distance));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t along = k % 2;
+    const V inside = k == 0 ? hn::Neg(low[1]) : k == 1 ? high[0] : k == 2 ? high[1] : hn::Neg(low[0]);
+    const V from = k < 2 ? low[along] : hn::Neg(high[along]);
+    const V half2 = hn::Sub(height2, hn::Mul(inside, inside));
+    const V half = hn::Sqrt(hn::Max(half2, zero));
+    const V start = hn::Max(from, hn::Neg(half)),
+            end = hn::Min(hn::Add(from, hn::Sub(high[along], low[along])), half);
+    const auto present = hn::And(hn::Gt(half2, zero), hn::Lt(start, end));
+    if (hn::AllFalse(d, present)) continue;
+    const auto only = [&](auto mask, V value) HWY_ATTR { return hn::IfThenElseZero(mask, value); };
+    const EdgeSums edge = alongEdges<false>(own, pair, distance, inside, start, end);
+    sums.gamma = hn::Add(sums.gamma, only(present, edge.flux));
+    sums.subtract(axis, only(present, hn::Mul(edge.area, side)), only(present, hn::Mul(edge.pairArea, side)));
+    // The side of the cone.
+    const V least = hn::Sqrt(hn::Sub(one, half2));
+    const auto open = hn::And(present, hn::Ge(least, hn::Set(d, kFacetRounding)));
+    const EdgeSums cone = alongEdges<true>(own, pair, zero, least, start, end);
+    const V over = hn::Div(one, least);
+    const V normal = hn::Mul(over, hn::Neg(hn::Mul(inside, side)));
+    const V outwards = hn::Mul(over, k == 0 || k == 3 ? distance : hn::Neg(distance));
+    sums.subtract(axis, only(open, hn::Mul(cone.area, normal)), only(open, hn::Mul(cone.pairArea, normal)));
+    sums.subtract(across[along], only(open, hn::Mul(cone.area, outwards)),
+                  only(open, hn::Mul(cone.pairArea, outwards)));
+  }
+}
+
+void facesBatch(std::span<const EdgeTerms> own, std::span<const EdgeTerms> pair,
+                std::span<const UprightFace> faces, std::span<const FacesSeen> points,
+                std::span<GammaSample> samples) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t begin = 0; begin < points.size(); begin += lanes) {
+    const std::span<const FacesSeen> group = points.subspan(begin, std::min(lanes, points.size() - begin));
+    alignas(32) float values[7][kEdgeGroup] = {};
+    for (std::size_t lane = 0; lane < group.size(); ++lane) {
+      const GammaSample& sample = samples[group[lane].sample];
+      values[0][lane] = sample.gamma;
+      for (std::size_t k = 0; k < 3; ++k) {
+        values[1 + k][lane] = sample.gradient[static_cast<int>(k)];
+        values[4 + k][lane] = sample.pairGradient[static_cast<int>(k)];
+      }
+    }
+    LaneSums sums;
+    sums.gamma = hn::Load(d, values[0]);
+    for (std::size_t k = 0; k < 3; ++k)
+      sums.gradient[k] = hn::Load(d, values[1 + k]), sums.pairGradient[k] = hn::Load(d, values[4 + k]);
+    LaneFaces now;
+    for (std::uint32_t round = 0; round < group.front().count; ++round) {
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        now.set(lane, lane < group.size() && round < group[lane].count ? faces[group[lane].first + round]
+                                                                       : kNoFace);
+      addFaces(own, pair, now, sums);
+    }
+    hn::Store(sums.gamma, d, values[0]);
+    for (std::size_t k = 0; k < 3; ++k)
+      hn::Store(sums.gradient[k], d, values[1 + k]), hn::Store(sums.pairGradient[k], d, values[4 + k]);
+    for (std::size_t lane = 0; lane < group.size(); ++lane) {
+      GammaSample& sample = samples[group[lane].sample];
+      sample.gamma = values[0][lane];
+      for (std::size_t k = 0; k < 3; ++k) {
+        sample.gradient[static_cast<int>(k)] = values[1 + k][lane];
+        sample.pairGradient[static_cast<int>(k)] = values[4 + k][lane];
+      }
+    }
   }
 }
 
@@ -149,6 +284,7 @@ HWY_AFTER_NAMESPACE();
 namespace migiwa {
 
 HWY_EXPORT(edgesBatch);
+HWY_EXPORT(facesBatch);
 
 namespace {
 
@@ -221,6 +357,12 @@ static_assert(sizeof(PolygonEdge) == 4 * sizeof(float) && sizeof(EdgeIntegrals) 
 void integrate(KernelType kernel, std::span<const PolygonEdge> edges, std::span<EdgeIntegrals> results) {
   const KernelEdges& terms = edgesOf(kernel);
   HWY_DYNAMIC_DISPATCH(edgesBatch)(terms.own, terms.pair, edges, results);
+}
+
+void addUprightFaces(KernelType kernel, std::span<const UprightFace> faces, std::span<const FacesSeen> points,
+                     std::span<GammaSample> samples) {
+  const KernelEdges& terms = edgesOf(kernel);
+  HWY_DYNAMIC_DISPATCH(facesBatch)(terms.own, terms.pair, faces, points, samples);
 }
 
 }  // namespace migiwa

@@ -18,8 +18,8 @@ namespace migiwa {
 
 /// Of the support radius: so far behind a plane a point is still taken to lie in front of it.
 inline constexpr float kOnFacet = 1e-3F;
-/// Of the support radius: nearer than that to a plane, a corner of another facet lies on it.
-inline constexpr float kFacetRounding = 1e-5F;
+/// Of the support radius: an edge is none that is shorter.
+inline constexpr float kShortEdge = 1e-7F;
 /// Of the support radius: from a corner or an edge no facet is seen, so that much a point is kept off walls.
 inline constexpr float kClearOfFacets = 1e-4F;
 
@@ -41,7 +41,7 @@ class PolygonSums {
     for (int k = 0; k < polygon.count; ++k) {
       const Vec3f &a = polygon.corner(k), way = polygon.corner(k + 1) - a;
       const float length = way.norm();
-      if (length < kShort) continue;
+      if (length < kShortEdge) continue;
       const Vec3f along = way / length, inwards = normal.cross(along);
       const float inside = -a.dot(inwards), from = a.dot(along);
       const float half2 = 1 - height * height - inside * inside;
@@ -65,7 +65,7 @@ class PolygonSums {
   }
 
   /// The same, open and in front of the point, for the face across an axis of an upright block from `low` to
-  /// `high`; `side`: 1 for the upper one, -1.
+  /// `high`, no edge of which is short; `side`: 1 for the upper one, -1.
   bool addFace(std::size_t i, const Vec3f& low, const Vec3f& high, int axis, float side, float distance,
                GammaSample& sample) {
     // The edges counter-clockwise as the point sees them, all four at a time.
@@ -76,10 +76,9 @@ class PolygonSums {
         lengths(longOne, longOther, longOne, longOther);
     const Quad half2 = 1 - distance * distance - insides * insides;
     const bool within = insides.minCoeff() >= 0;
-    const bool apart = std::min(longOne, longOther) < kShort;
     if (!within) {
       for (int k = 0; k < 4; ++k)
-        if (insides[k] < 0 && half2[k] <= 0 && lengths[k] >= kShort) return false;
+        if (insides[k] < 0 && half2[k] <= 0) return false;
     }
     const Quad half = roots(half2.max(0.0F)), leasts = roots(1 - half2);
     const Quad starts = froms.max(-half), ends = (froms + lengths).min(half);
@@ -89,7 +88,7 @@ class PolygonSums {
     Vec3f normal = Vec3f::Zero();
     normal[axis] = side;
     for (int k = 0; k < 4; ++k) {
-      if (!(half2[k] > 0 && starts[k] < ends[k]) || (apart && lengths[k] < kShort)) continue;
+      if (!(half2[k] > 0 && starts[k] < ends[k])) continue;
       put({distance, insides[k], starts[k], ends[k]}, {i, 1, normal});
       if (leasts[k] < kFacetRounding) continue;
       Vec3f cone = Vec3f::Zero();
@@ -97,7 +96,7 @@ class PolygonSums {
       cone[across[k]] = 1 / leasts[k] * (distance * inwards[k]);
       put({0, leasts[k], starts[k], ends[k]}, {i, 0, cone});
     }
-    if (within || (apart && allWithin(insides, lengths))) addPlane(normal, distance, 1, 1, sample);
+    if (within) addPlane(normal, distance, 1, 1, sample);
     return true;
   }
 
@@ -128,6 +127,13 @@ class PolygonSums {
     }
   }
 
+  /// A whole plane, where the point's foot is in the polygon.
+  static void addPlane(const Vec3f& normal, float height, float side, float sign, GammaSample& sample) {
+    sample.gamma -= side * (1 - Kernel::planeGamma(height));
+    sample.gradient += sign * Kernel::planeGammaSlope(height) * normal;
+    sample.pairGradient += sign * PairKernel<Kernel>::planeGammaSlope(height) * normal;
+  }
+
   /// Integrates along all edges, and adds what that gives to the samples.
   void finish(KernelType kernel, std::span<GammaSample> samples) {
     // Filled up to whole vectors by edges without length.
@@ -152,17 +158,12 @@ class PolygonSums {
     Vec3f normal;  ///< with the sign
   };
 
-  /// An edge is none that is shorter.
-  static constexpr float kShort = 1e-7F;
   /// A value of each edge of a rectangle.
   using Quad = Eigen::Array4f;
 
   /// Exact; those of Eigen are not the same on all processors.
   static Quad roots(const Quad& of) {
     return {std::sqrt(of[0]), std::sqrt(of[1]), std::sqrt(of[2]), std::sqrt(of[3])};
-  }
-  static bool allWithin(const Quad& insides, const Quad& lengths) {
-    return (insides >= 0 || lengths < kShort).all();
   }
 
   /// For so many more edges.
@@ -182,13 +183,6 @@ class PolygonSums {
     const float half = std::sqrt(half2);
     start = std::max(from, -half), end = std::min(from + length, half);
     return start < end;
-  }
-
-  /// A whole plane, where the point's foot is in the polygon.
-  static void addPlane(const Vec3f& normal, float height, float side, float sign, GammaSample& sample) {
-    sample.gamma -= side * (1 - Kernel::planeGamma(height));
-    sample.gradient += sign * Kernel::planeGammaSlope(height) * normal;
-    sample.pairGradient += sign * PairKernel<Kernel>::planeGammaSlope(height) * normal;
   }
 
   /// What a point sees of a tank's plane through a polygon, where no other plane of the tank comes before.
