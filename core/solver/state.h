@@ -149,6 +149,9 @@ struct StepRecord {
   std::vector<IterationError> errors;
   int iterations = 0;
   int pressureIterations = 0;  ///< of the projection
+  /// What DFSPH's solves have left: the mean error of the density that the step leads to, and the mean
+  /// divergence times the step (1).
+  double densityLeft = 0, divergenceLeft = 0;
 
   // Guards that acted.
   long gammaFloored = 0;
@@ -211,8 +214,12 @@ struct StepState : FluidState, StepBuffers, StepRecord {
     if (!takesPressure()) return 1;
     return lattice.besideWalls(g) - g * (lattice.wallSlope + 2 * lattice.wallBend * (1 - g));
   }
+  /// Whether walls push by depth, and let particles in as far as that.
+  bool softWalls() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::absent; }
+  /// Centres of fluid at rest are this far from walls (m).
+  float restingMargin() const { return 0.5F * spacing; }
   /// Centres stay this far inside the fluid side (m).
-  float wallMargin() const { return 0.5F * spacing; }
+  float wallMargin() const { return softWalls() ? 0.1F * spacing : restingMargin(); }
 };
 
 // A lower bound for a particle's distance from every wall, without evaluating the walls: what was measured
