@@ -134,7 +134,9 @@ struct StepBuffers {
   std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
   std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
   std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
-  BeforeStep before;             ///< to take back the step, or energy that it made; empty without guards
+  /// To take back the step, or energy that it made; without guards only velocities, where a pressure is
+  /// taken.
+  BeforeStep before;
   std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
   CellGrid grid;
   NeighbourLists neighbours;
