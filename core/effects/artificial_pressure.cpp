@@ -1,7 +1,9 @@
 // Artificial pressure (Macklin & Mueller 2013, Eq. 13; Monaghan 2000): pairs that are close push each other
 // away with s_corr = -k (W(q) / W(delta_q))^n beside lambda_i + lambda_j, which keeps particles evenly spread
 // where the density alone does not, at free surfaces above all. A pass of its own beside the position step's.
-// Deviation: k is a compression, so that its strength depends neither on the spacing nor on the kernel.
+// Deviations: with a solver that has no constraint it is the acceleration that PBF would give in steps as
+// long as the scene asks for, whatever the steps that the solver takes; k is a compression, so that its
+// strength depends neither on the spacing nor on the kernel.
 #include "core/effects/effects.h"
 #include "core/solver/state.h"
 
@@ -88,6 +90,11 @@ class ArtificialPressure final : public EffectOf<ArtificialPressure> {
     const double lambda =
         -k_ / ((1 + state.parameters.cfmEpsilon) * static_cast<double>(state.lattice.squaredGradients));
     push.scale = weight * state.lattice.massRatio * static_cast<float>(lambda);
+    if (!state.constrains()) {
+      const double asked = state.parameters.timeStep / state.parameters.substeps;
+      const float part = state.timeStep / static_cast<float>(asked);
+      push.scale *= part * part;
+    }
     push.reference = withKernel(state.parameters.kernel, [&](auto kernel) {
       return decltype(kernel)::value(static_cast<float>(deltaQ_));
     });

@@ -60,6 +60,7 @@ constexpr std::array kHandlings{
     Entry{"particles", makeBoundaryParticles},
     Entry{"wall_weight", makeWallWeight},
     Entry{"spline", makeSplineGamma},
+    Entry{"penalty", makePenalty},
 };
 
 }  // namespace

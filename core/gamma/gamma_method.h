@@ -58,6 +58,7 @@ struct GammaChoice {
 enum class WallDensity {
   divided,  ///< rho = S / gamma, [FM] Eq. 5
   added,    ///< rho = S + (1 - gamma): the walls' own density is 1 - gamma, and may exceed 1
+  absent,   ///< rho = S, and walls are soft: they push by depth, see core/solver/penalty.cpp
 };
 
 class GammaMethod {
@@ -173,6 +174,8 @@ std::unique_ptr<GammaMethod> makeBoundaryParticles(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeWallWeight(const GammaContext& context);
 /// Kulasegaram, Bonet, Lewis, Profit 2004: gamma as a spline over the distance.
 std::unique_ptr<GammaMethod> makeSplineGamma(const GammaContext& context);
+/// Moore & Wilhelms 1988: no correction, and a force that grows with the depth in the wall.
+std::unique_ptr<GammaMethod> makePenalty(const GammaContext& context);
 
 // gamma on a plane cut through a scene, and how far it is from a fine reference: the paper's Figure 3.
 

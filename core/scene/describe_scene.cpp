@@ -156,7 +156,7 @@ void describeBoundary(Visitor& visitor, Visited<Visitor, Scene>& scene) {
       "handling", boundary.handling, handlingNames(),
       {"",
        "How the density is corrected at walls: by gamma, by one of the methods that it is compared "
-       "with, or not at all; none only keeps the particles out."});
+       "with, or not at all; none only keeps the particles out, and penalty pushes by depth."});
   visitor.object("gamma", {"", "How gamma, the uncovered part of the kernel, is found."},
                  [&](auto& fields) { describeGamma(fields, boundary); });
   const auto nothing = [](auto&, auto&) {};
@@ -210,7 +210,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
   visitor.number("cfl", solver.cfl, Range::closed(0, 10),
                  {"1",
                   "Support radii that the fastest particle may move in a substep; 0 for no such limit, nor "
-                  "those of effects."});
+                  "those of effects; that of wcsph's sound stays."});
   visitor.integer("min_iterations", solver.minIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),

@@ -49,9 +49,20 @@ void RunStatistics::record(const StepState& state, const Health& health, double 
   lostParticles = health.lost;
   nonfiniteParticles = health.nonfinite;
 
-  if (error.mean > state.parameters.tolerance && state.iterations >= state.parameters.maxIterations) {
+  const SolverParameters& asked = state.parameters;
+  const bool twoSolves = asked.method == SolverMethod::dfsph;
+  // Of DFSPH errors hold the density before its solves.
+  const double left = twoSolves ? state.densityLeft : error.mean;
+  if (twoSolves && state.divergenceLeft > asked.divergenceTolerance &&
+      state.pressureIterations >= asked.maxPressureIterations) {
     note("not_converged", steps,
-         "mean density error " + std::to_string(error.mean) + " after " + std::to_string(state.iterations) +
+         "mean divergence times the step " + std::to_string(state.divergenceLeft) + " after " +
+             std::to_string(state.pressureIterations) + " iterations, divergence_tolerance " +
+             std::to_string(asked.divergenceTolerance));
+  }
+  if (left > asked.tolerance && state.iterations >= asked.maxIterations) {
+    note("not_converged", steps,
+         "mean density error " + std::to_string(left) + " after " + std::to_string(state.iterations) +
              " iterations, tolerance " + std::to_string(state.parameters.tolerance));
   }
   if (state.gammaFloored > 0) {

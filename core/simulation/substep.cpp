@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/simulation/run_state.h"
+#include "core/solver/solvers.h"
 
 namespace migiwa {
 
@@ -221,6 +222,8 @@ void Simulation::advanceFrame() {
       const double speed = state.largestSpeed(start, longest);
       if (speed * step > reach) step = reach / speed;
       step = std::min(step, migiwa::longestStep(state.step, state.effects));
+    } else if (const auto ofSolver = kSolvers[static_cast<std::size_t>(parameters.method)].longestStep) {
+      step = std::min(step, ofSolver(state.step));
     }
     // In doubles: a step that the CFL rule makes short enough has more parts than a whole number holds.
     const double wanted = std::ceil(left / step - 1e-6), most = static_cast<double>(kMostSubsteps - taken);

@@ -24,10 +24,15 @@ constexpr float kWarm = 0.5F;
 /// Below it a particle is at the surface, or flies.
 constexpr float kInside = 0.9F;
 
-/// Lets pressures grow until the mean of error(i) > 0 is at most `tolerance`; returns the iterations.
+struct Solved {
+  int iterations;
+  double left;  ///< the mean error
+};
+
+/// Lets pressures grow until the mean of error(i) > 0 is at most `tolerance`.
 /// `error`: of the density that is left (1), from the rate in projection.residual.
 template <class Error>
-int solve(StepState& state, int least, int most, double tolerance, const Error& error) {
+Solved solve(StepState& state, int least, int most, double tolerance, const Error& error) {
   const auto count = static_cast<double>(std::max<std::size_t>(state.particles.size(), 1));
   press::push(state);
   for (int iterations = 0;; ++iterations) {
@@ -35,7 +40,8 @@ int solve(StepState& state, int least, int most, double tolerance, const Error& 
     const double left = parallelSum(state.pool, state.particles.size(), [&](std::size_t i) {
       return static_cast<double>(std::max(error(i), 0.0F));
     });
-    if ((iterations >= least && left <= tolerance * count) || iterations >= most) return iterations;
+    if ((iterations >= least && left <= tolerance * count) || iterations >= most)
+      return {iterations, left / count};
     parallelEach(state.pool, state.particles.size(), [&](std::size_t i) {
       const float s = state.density[i], change = press::stiffness(state, state.projection.diagonal[i]);
       state.projectedPressure[i] = std::max(state.projectedPressure[i] + s * s * change * error(i), 0.0F);
@@ -51,25 +57,30 @@ void stages::pressFreeOfDivergence(StepState& state) {
   const std::size_t n = state.particles.size();
   state.errors.push_back(press::measure(state));
   ProjectionBuffers& buffers = state.projection;
-  // The first solve is of the velocities that the step before has left.
+  // The first solve is of the velocities that the step before has left, before gravity and before walls have
+  // taken off what gravity alone would press into them.
   const Vec3f gain = state.timeStep * state.gravity;
+  const std::vector<Float4>& began = state.before.velocity;
   buffers.potential.resize(n);
   parallelEach(state.pool, n, [&](std::size_t i) {
-    state.previous[i] = Float4(Vec3f(state.previous[i].xyz() - gain));
+    state.previous[i] = Float4(Vec3f(began[i].xyz() - gain));
     buffers.potential[i] = kWarm * state.projectedPressure[i];
     state.projectedPressure[i] = 0;
   });
-  state.pressureIterations =
+  const Solved divergence =
       solve(state, 1, parameters.maxPressureIterations, parameters.divergenceTolerance, [&](std::size_t i) {
         return state.density[i] < kInside ? 0.0F : state.timeStep * buffers.residual[i];
       });
   parallelEach(state.pool, n, [&](std::size_t i) {
-    state.previous[i] = Float4(Vec3f(buffers.velocity[i].xyz() + gain));
+    const Vec3f change = buffers.velocity[i].xyz() - state.previous[i].xyz();
+    state.previous[i] = Float4(Vec3f(state.particles.velocity[i].xyz() + change));
     std::swap(buffers.potential[i], state.projectedPressure[i]);
   });
-  state.iterations =
+  const Solved density =
       solve(state, parameters.minIterations, parameters.maxIterations, parameters.tolerance,
             [&](std::size_t i) { return state.density[i] - 1 + state.timeStep * buffers.residual[i]; });
+  state.pressureIterations = divergence.iterations, state.divergenceLeft = divergence.left;
+  state.iterations = density.iterations, state.densityLeft = density.left;
   // What walls and wall friction see is the push of both.
   parallelEach(state.pool, n, [&](std::size_t i) { state.projectedPressure[i] += buffers.potential[i]; });
   press::take(state);

@@ -134,7 +134,9 @@ struct StepBuffers {
   std::vector<Float4> current;   ///< predicted position (m), then that of the iteration
   std::vector<Float4> previous;  ///< the same an iteration earlier (m); free outside the iterations
   std::vector<Float4> paired;    ///< of the iteration, with the factor that Eq. 10 sums in w; free outside
-  BeforeStep before;             ///< to take back the step, or energy that it made; empty without guards
+  /// To take back the step, or energy that it made; without guards only velocities, where a pressure is
+  /// taken.
+  BeforeStep before;
   std::vector<std::uint32_t> spareIds;  ///< to sort the particles through
   CellGrid grid;
   NeighbourLists neighbours;
@@ -149,6 +151,9 @@ struct StepRecord {
   std::vector<IterationError> errors;
   int iterations = 0;
   int pressureIterations = 0;  ///< of the projection
+  /// What DFSPH's solves have left: the mean error of the density that the step leads to, and the mean
+  /// divergence times the step (1).
+  double densityLeft = 0, divergenceLeft = 0;
 
   // Guards that acted.
   long gammaFloored = 0;
@@ -211,8 +216,12 @@ struct StepState : FluidState, StepBuffers, StepRecord {
     if (!takesPressure()) return 1;
     return lattice.besideWalls(g) - g * (lattice.wallSlope + 2 * lattice.wallBend * (1 - g));
   }
+  /// Whether walls push by depth, and let particles in as far as that.
+  bool softWalls() const { return gammaMethod != nullptr && gammaMethod->form() == WallDensity::absent; }
+  /// Centres of fluid at rest are this far from walls (m).
+  float restingMargin() const { return 0.5F * spacing; }
   /// Centres stay this far inside the fluid side (m).
-  float wallMargin() const { return 0.5F * spacing; }
+  float wallMargin() const { return softWalls() ? 0.1F * spacing : restingMargin(); }
 };
 
 // A lower bound for a particle's distance from every wall, without evaluating the walls: what was measured

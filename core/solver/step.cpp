@@ -55,6 +55,7 @@ void predict(StepState& state) {
       state.current[i] = Float4(Vec3f(particles.position[i].xyz() + dt * velocity));
     }
   });
+  if (state.softWalls()) pushOutOfSoftWalls(state);
   // Here rather than after the solve: the density must be that of where particles can be.
   projectAll(state);
 }
@@ -246,7 +247,7 @@ void pressAndMove(StepState& state, EffectPipeline& effects, const Watch& watch)
   watched("predict");
   effects.changePrediction(state, watch);
   state.times.time("predict", [&] {
-    if (state.guards) state.before.velocity = state.particles.velocity;
+    state.before.velocity = state.particles.velocity;
     stages::takeVelocities(state);
     takePositions(state);
   });

@@ -167,6 +167,8 @@ void movePositions(StepState& state, float weight = 1);
 void projectNearWalls(StepState& state);
 /// The same for every particle: one that was far from the walls may have crossed one in a single move.
 void projectAll(StepState& state);
+/// What walls that push by depth add to the prediction; see penalty.cpp.
+void pushOutOfSoftWalls(StepState& state);
 /// v = (x* - x) / dt.
 void takeVelocities(StepState& state);
 /// x* = x + v dt.

@@ -20,6 +20,7 @@ BoundaryHandling handlingOf(std::string_view name) {
 
 TEST(Baselines, AParticleRestsAtAWall) {
   for (const std::string_view name : handlingNames()) {
+    if (name == "penalty") continue;  // in its spring, see penalty_test.cpp
     Scene scene = emptyScene();
     scene.gravity = {0, -9.81, 0};
     addFluid(scene, Vec3d::Zero(), Vec3d::Constant(kSpacing));
@@ -72,6 +73,10 @@ TEST(Baselines, KeepMoreOfTheWaterThanNoCorrection) {
   const double none = settle("none");
   for (const std::string_view name : handlingNames().subspan(2)) {
     const double height = settle(name);
+    if (name == "penalty") {
+      EXPECT_LT(height, none) << "no correction either, and walls that let particles in";
+      continue;
+    }
     EXPECT_GT(height, none + 0.03) << name;
     EXPECT_LT(height, 1.06) << name;
   }

@@ -251,6 +251,7 @@ class SqueezedWater {
       particles.velocity.emplace_back(Vec3f(velocities_[i].cast<float>()));
       particles.id[i] = static_cast<std::uint32_t>(i);
     }
+    state_.before.velocity = particles.velocity;
     state_.current = particles.position;
     state_.current.emplace_back();
     state_.wallSlots.clear(), state_.wallSlot.clear();
@@ -351,6 +352,65 @@ TEST(SolverRate, OfDensityIsWithinTheToleranceAfterDfsph) {
         std::max(static_cast<double>(state.density[i] - 1) + static_cast<double>(state.timeStep) * rate, 0.0);
   }
   EXPECT_LE(left / static_cast<double>(n), 1.01 * state.parameters.tolerance);
+}
+
+// Water at rest on which gravity has acted for a step, of which the floor has taken its part: before that
+// nothing moved, so the first solve has nothing to do, and the second is told not to.
+TEST(SolverDivergence, IsThatOfTheVelocitiesThatTheStepBeforeHasLeft) {
+  SqueezedWater water(SolverMethod::dfsph);
+  StepState& state = water.state();
+  state.parameters.minIterations = 0;
+  state.parameters.tolerance = 0.99;
+  state.gravity = {0, -9.81F, 0};
+  const Vec3f gain = state.timeStep * state.gravity;
+  for (std::size_t i = 0; i < state.particles.size(); ++i) {
+    const bool onFloor = state.particles.position[i].y < 0.9F * static_cast<float>(kSpacing);
+    state.before.velocity[i] = Float4(gain);
+    state.particles.velocity[i] = Float4(onFloor ? Vec3f(Vec3f::Zero()) : gain);
+  }
+  stages::pressFreeOfDivergence(state);
+  for (const float pressure : state.projectedPressure) EXPECT_EQ(pressure, 0);
+}
+
+TEST(SolverDivergence, ThatIsLeftIsNoted) {
+  Scene scene = solvedBy(smallDamBreak(), SolverMethod::dfsph);
+  scene.solver.divergenceTolerance = 0;
+  scene.solver.maxPressureIterations = 1;
+  Simulation simulation(scene, 1);
+  for (int k = 0; k < 20; ++k) simulation.advanceFrame();
+  const auto& events = simulation.statistics().trouble;
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const auto& event) {
+    return event.kind == "not_converged" && event.detail.find("divergence") != std::string::npos;
+  }));
+}
+
+// "cfl": 0 frees the step of the speed of particles, not of that of sound, beyond which it is not stable.
+TEST(SolverSteps, OfWcsphKeepToSoundWithoutTheCflRule) {
+  Scene scene = solvedBy(stillTank({4, 4, 4}), SolverMethod::wcsph);
+  scene.solver.cfl = 0;
+  scene.solver.timeStep = 0.01;
+  scene.solver.wcsph.soundSpeed = 45;
+  Simulation simulation(scene, 1);
+  simulation.advanceFrame();
+  EXPECT_EQ(simulation.statistics().steps, std::ceil(0.01 * 45 / (0.4 * 2.25 * kSpacing)));
+}
+
+// A pair flies apart with the same speed, however short the steps that sound asks for.
+TEST(SolverEffects, ArtificialPressureDoesNotGrowWithShorterSteps) {
+  const auto speed = [](double sound) {
+    Scene scene = emptyScene();
+    addFluid(scene, Vec3d::Zero(), {2 * kSpacing, kSpacing, kSpacing});
+    scene.effects = effectsOf(R"({"artificial_pressure": {"delta_q": 0.5, "k": 0.01}})");
+    scene = solvedBy(scene, SolverMethod::wcsph);
+    scene.solver.wcsph.soundSpeed = sound;
+    Simulation simulation(scene, 1);
+    simulation.advanceFrame();
+    EXPECT_EQ(simulation.view().velocities.size(), 2U);
+    return simulation.statistics().maxSpeed;
+  };
+  const double inOne = speed(1);
+  EXPECT_GT(inOne, 0);
+  EXPECT_NEAR(speed(90) / inOne, 1, 0.1);
 }
 
 Scene parsedWith(const std::string& solver) {
