@@ -140,7 +140,7 @@ screenshotsOfWindow() {
   say "The window: its start and its gallery, on a display"
   windowPicture window_start <<<$'wait 8\nkey space\nwait 2\nkey p\nwait 3\nclose'
   windowPicture window_gallery <<<$'wait 6\nkey space\nclick 158 40\nwait 4\nmove 200 700\nwait 3\nkey p\nwait 3\nclose'
-  say "The window: keys, a branch on the time line, a particle that is looked into, particles, a section, changes, a command"
+  say "The window: keys, a branch on the time line, a particle that is looked into, particles, a section, plots, changes, a command"
   scriptPicture window_keys dam_break <<<'[{"play_to": 0.5}, {"key": "f1"}, {"picture": "picture.png"}]'
   scriptPicture window_time_line dam_break <<'EVENTS'
 [{"play_to": 1.4}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "z", "control": true}, {"wait": 0.5}, {"key": "home"},
@@ -158,6 +158,11 @@ EVENTS
     --set '/view/camera={"eye":[1.2,1.1,4.2],"target":[1.55,0.42,0.8],"fov_degrees":34}' <<'EVENTS'
 [{"press": "Solver"}, {"press": "Section"}, {"press": "Show", "at": 0}, {"press": "Fit"}, {"choose": "Field", "entry": "pressure"},
  {"play_to": 1.4}, {"move": [0.31, 0.7]}, {"picture": "picture.png"}]
+EVENTS
+  scriptPicture window_plots dam_break --size 1280x900 --scale 1 <<'EVENTS'
+[{"press": "Solver"}, {"press": "Boundary"}, {"press": "Viscosity"}, {"choose": "Theme", "entry": "light"}, {"press": "View"},
+ {"press": "Section"}, {"press": "Changes"}, {"press": "Energy"}, {"play_to": 1.2}, {"key": "home"}, {"wait": 1},
+ {"play_to": 0.2}, {"key": "c"}, {"wait": 0.5}, {"play_to": 1}, {"press": "Plots"}, {"wait": 0.3}, {"move": [0.5, 0.2]}, {"picture": "picture.png"}]
 EVENTS
   scriptPicture window_changes dam_break <<'EVENTS'
 [{"play_to": 0.5}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "c"}, {"wait": 0.5}, {"choose": "Colour", "entry": "speed"},

@@ -67,9 +67,9 @@ struct EventKind {
 };
 const std::vector<EventKind>& eventKinds() {
   static const std::vector<EventKind> kinds{
-      {"press", {"at"}},
-      {"drag", {"from", "to"}},
-      {"choose", {"entry"}},
+      {"press", {"at", "in"}},
+      {"drag", {"from", "to", "in"}},
+      {"choose", {"entry", "in"}},
       {"type", {}},
       {"key", {"control", "shift"}},
       {"move", {}},
@@ -106,6 +106,7 @@ class ScriptEvent {
     }
   }
 
+  const std::string& place() const { return place_; }
   std::string_view kind() const { return kind_->name; }
   std::string text() const { return text(kind_->name); }
   std::string text(std::string_view key) const {
@@ -115,6 +116,8 @@ class ScriptEvent {
       refuse("a text of at least one letter in \"" + std::string(key) + "\"", "an empty one");
     return json_.at(key).get<std::string>();
   }
+  /// The title of the panel in which the widget is to be; empty: in any.
+  std::string panel() const { return json_.contains("in") ? text("in") : ""; }
   /// `otherwise` where the event has none.
   double number(std::string_view key, double low, double high, std::optional<double> otherwise = {}) const {
     if (otherwise && !json_.contains(key)) return *otherwise;
@@ -205,7 +208,7 @@ std::vector<std::size_t> beginsOfEntries(std::string_view text) {
 }
 
 /// Throws what can be told before anything is done.
-void checkEvent(const ScriptEvent& event) {
+void checkEvent(const ScriptEvent& event, const Scene& scene) {
   const std::string_view kind = event.kind();
   if (kind == "press" || kind == "drag" || kind == "choose" || kind == "type" || kind == "wait_for" ||
       kind == "wait_while" || kind == "picture")
@@ -221,12 +224,13 @@ void checkEvent(const ScriptEvent& event) {
   if (kind == "move" || kind == "click" || kind == "double_click") event.places(kind, 1);
   if (kind == "drag_view") event.places(kind, 2);
   if (kind == "wheel") event.number("wheel", -100, 100), event.places("over", 1);
-  if (kind == "play_to") event.number("play_to", 0, kLongestRun);
+  if (kind == "play_to") requireReachable(scene, event.number("play_to", 0, kLongestRun), event.place());
   if (kind == "wait") event.number("wait", 0, kLongestWait);
   if (kind == "wait_for" || kind == "wait_while") event.number("within", 0, kLongestWait, kUsualWait);
   if (kind == "picture" && (!event.text().ends_with(".png") || event.text().find('/') != std::string::npos))
     event.refuse("a name without a folder that ends in .png", "\"" + event.text() + "\"");
   event.held();
+  event.panel();
 }
 
 /// The window of a scene, and hands at it.
@@ -254,7 +258,7 @@ class ScriptedWindow {
       hands_.click(widget(event, event.text(), {}), {});
       hands_.look();
       const auto entry = placeOfText(event.text("entry"), true);
-      hands_.click(entry ? *entry : widget(event, event.text("entry"), {}), {});
+      hands_.click(entry ? *entry : widget(event, event.text("entry"), {}, false), {});
     } else if (kind == "type") {
       hands_.type(event.text());
     } else if (kind == "key") {
@@ -289,6 +293,9 @@ class ScriptedWindow {
       std::cout << file.string() << std::endl;
     }
   }
+
+  /// Pictures that keys asked for, too; throws where one could not be kept.
+  void keepAll() { window_.keepAll(); }
 
  private:
   void frame(const InputState& input) {
@@ -327,10 +334,19 @@ class ScriptedWindow {
             static_cast<float>(area.y + share[1] * (area.height - 1))};
   }
   Hands::Place over(const ScriptEvent& event, std::string_view key) { return pixel(event.places(key, 1)[0]); }
-  Hands::Place widget(const ScriptEvent& event, const std::string& name, std::optional<double> share) {
+  Hands::Place widget(const ScriptEvent& event, const std::string& name, std::optional<double> share,
+                      bool inPanel = true) {
     hands_.look();
-    const auto place = placeOfWidget(name, share);
+    const std::string panel = inPanel ? event.panel() : "";
+    const auto place = placeOfWidget(name, share, panel);
     if (place) return *place;
+    const std::vector<std::string> open = openPanels();
+    if (!panel.empty() && std::find(open.begin(), open.end(), panel) == open.end())
+      event.refuse("in \"in\" a panel that is open, one of " +
+                       quotedList(std::vector<std::string_view>(open.begin(), open.end())),
+                   "\"" + panel + "\"");
+    if (!panel.empty() && placeOfWidget(name, share))
+      event.refuse("\"" + name + "\" in the panel \"" + panel + "\"", "it elsewhere alone");
     const std::vector<std::string> near = namesLike(name, 5);
     event.refuse("something that is shown, such as " +
                      quotedList(std::vector<std::string_view>(near.begin(), near.end())),
@@ -388,8 +404,14 @@ void runScript(const std::filesystem::path& script, const RenderJob& job, const 
   const std::string text = readTextFile(script, "a script");
   const JsonDocument document = parseJson(text);
   FaultCollector collect;
+  std::vector<Fault> faults;
   for (const DocumentFault& fault : document.faults)
-    collect.add({script.string() + ":" + fault.pointer, fault.message});
+    faults.push_back({script.string() + ":" + fault.pointer, fault.message});
+  const std::vector<int> lines = linesOfFaults(faults, text, script);
+  for (std::size_t k = 0; k < faults.size(); ++k)
+    collect.add(
+        {document.broken ? faults[k].place : script.string() + ":" + std::to_string(lines[k]),
+         document.broken ? faults[k].message : document.faults[k].pointer + ": " + faults[k].message});
   collect.raise();
   if (!document.root.is_array())
     throw InputError(script.string(), "expected a list of events, found " + describeJson(document.root));
@@ -402,7 +424,7 @@ void runScript(const std::filesystem::path& script, const RenderJob& job, const 
     collect([&] {
       events.emplace_back(script.string() + ":" + std::to_string(line) + ": event " + std::to_string(k + 1),
                           document.root[k]);
-      checkEvent(events.back());
+      checkEvent(events.back(), job.variants.front().scene);
     });
   }
   collect.raise();
@@ -426,6 +448,7 @@ void runScript(const std::filesystem::path& script, const RenderJob& job, const 
   };
   ScriptedWindow stage(job, window, {.scale = job.scale, .timings = options.timings}, common.threads);
   for (const ScriptEvent& event : events) stage.carryOut(event);
+  stage.keepAll();
 }
 
 }  // namespace migiwa

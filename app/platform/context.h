@@ -102,6 +102,8 @@ class GlfwWindow final : public GlContext {
   std::array<int, 2> framebufferSize() const;
   /// Pixels over those of an ordinary screen.
   double contentScale() const;
+  /// Waits until all is drawn.
+  void finish();
   /// Shows what was drawn.
   void swap();
   /// That of the desktop; lasts no longer than the window.

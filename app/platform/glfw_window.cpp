@@ -188,6 +188,10 @@ double GlfwWindow::contentScale() const {
   return std::max(1.0, static_cast<double>(std::max(x, y)));
 }
 
+void GlfwWindow::finish() {
+  glFinish();
+}
+
 void GlfwWindow::swap() {
   glfwSwapBuffers(state_->window);
 }

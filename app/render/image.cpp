@@ -144,6 +144,13 @@ void RenderTarget::beginOverlay() const {
   glBindFramebuffer(GL_FRAMEBUFFER, result_.name());
 }
 
+void RenderTarget::beginOverlay(const RenderTarget& scene) const {
+  scene.copyScene(scene.result_, GL_COLOR_BUFFER_BIT);
+  glBlitNamedFramebuffer(scene.result_.name(), result_.name(), 0, 0, scene.width_, scene.height_, 0, 0,
+                         width_, height_, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  glBindFramebuffer(GL_FRAMEBUFFER, result_.name());
+}
+
 Image RenderTarget::read() const {
   Image fromBottom(width_, height_), image(width_, height_);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, result_.name());

@@ -68,6 +68,8 @@ class RenderTarget {
   void continueScene() const;
   /// Resolves it and binds the result.
   void beginOverlay() const;
+  /// The same, with what another target holds, brought to this one's size.
+  void beginOverlay(const RenderTarget& scene) const;
   /// The finished picture, opaque.
   Image read() const;
   /// Depth in [0, 1] at a pixel counted from the top left; nothing where nothing was drawn.

@@ -21,6 +21,10 @@ SpherePass::SpherePass(const ColorMap& colors)
   glVertexArrayAttribBinding(layout_.name(), 0, 0);
 }
 
+void SpherePass::setColors(const ColorMap& colors) {
+  colors_ = makeColorTexture(colors);
+}
+
 void SpherePass::draw(std::span<const Float4> spheres, float radius) {
   if (spheres.empty()) return;
   if (spheres.size() > capacity_) {

@@ -28,6 +28,7 @@ void describeMesh(const GlVertexArray& layout, const GlBuffer& vertices, const G
 class SpherePass {
  public:
   explicit SpherePass(const ColorMap& colors);
+  void setColors(const ColorMap& colors);
 
   /// `spheres`: centre (m) and, in w, the colour value in [0, 1].
   void draw(std::span<const Float4> spheres, float radius);

@@ -14,6 +14,7 @@ namespace migiwa {
 /// Pixels, origin in the top left corner.
 struct Rect {
   int x = 0, y = 0, width = 1, height = 1;
+  bool operator==(const Rect&) const = default;
 };
 
 using Mat4f = Eigen::Matrix4f;

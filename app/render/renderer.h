@@ -44,6 +44,8 @@ struct Shot {
   Vec3f waterLoss = Vec3f::Zero();       ///< of red, green and blue light in water (1/m)
   std::optional<CutPlane> cut{};         ///< nothing: `clip` is what counts
   std::shared_ptr<const Sheet> sheet{};  ///< null: none
+
+  bool operator==(const Shot&) const = default;
 };
 
 /// The plane that the shot is cut at, its normal towards the camera.
@@ -60,6 +62,9 @@ class Renderer {
   /// Draws into the target's multisampled buffer, which beginScene() has bound. A frame that has the water's
   /// surface shows it in place of the particles, whole where a clip plane would cut.
   void draw(const FrameView& frame, const Shot& shot, const RenderTarget& target);
+
+  /// Of particles, from now on.
+  void setColors(const ColorMap& colors) { spherePass_.setColors(colors); }
 
   const Ground& ground() const { return ground_; }
   const NodePass& nodes() const { return nodePass_; }

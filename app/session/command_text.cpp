@@ -128,6 +128,8 @@ CommandModel commandFor(const ShownMoment& shown) {
     command.lacks.emplace_back(
         "The run did not begin with the scene, or its beginning is no longer kept: the command begins "
         "there.");
+  if (shown.view.scale != ColorScale::cool)
+    command.lacks.emplace_back("Colours are from blue to yellow there.");
   if (shown.inspects) command.lacks.emplace_back("The particle that is looked into is not drawn.");
   return command;
 }

@@ -119,10 +119,8 @@ std::vector<TextFault> faultsOf(const std::filesystem::path& file, const std::st
     thrown = {{file.string(), error.what()}};
   }
   std::vector<TextFault> faults;
-  for (Fault& fault : thrown) {
-    const int line = lineOfFault(fault, text, file);
-    faults.push_back({std::move(fault), line});
-  }
+  const std::vector<int> lines = linesOfFaults(thrown, text, file);
+  for (std::size_t k = 0; k < thrown.size(); ++k) faults.push_back({std::move(thrown[k]), lines[k]});
   return faults;
 }
 
@@ -195,6 +193,7 @@ std::filesystem::path SceneSession::stateFile() const {
 }
 
 void SceneSession::work() {
+  letOthersGoFirst();
   const ProgressScope watched(preparing_);
   std::unique_lock lock(mutex_);
   while (true) {
@@ -323,19 +322,24 @@ void WhatIfSession::begin(WhatIfModel& model, SimulationThread& simulation, cons
   if (model.points.empty()) settings.push_back(now);
   if (!model.points.empty() || !model.follows) settings.push_back(model.asked);
   model.busy = true;
-  model.note = "measuring five frames on a copy; the run waits";
+  model.note = "measuring " + std::to_string(model.frames) + " frames on a copy; the run waits";
   std::future<StateImage> state;
   if (moment_ == nullptr) state = simulation.capture();
-  asking_ =
-      std::async(std::launch::async, [state = std::move(state), copy = copy_, moment = moment_,
-                                      threads = threads_, scene = simulation.scene(), settings]() mutable {
+  asking_ = std::async(
+      std::launch::async, [state = std::move(state), copy = copy_, moment = moment_, threads = threads_,
+                           frames = model.frames, scene = simulation.scene(), settings]() mutable {
         Outcome outcome;
+        outcome.frames = frames;
         try {
           if (moment == nullptr) moment = std::make_shared<const StateImage>(state.get());
           if (copy == nullptr) copy = std::make_shared<WhatIf>(scene, threads);
+          const Meter meter(scene);
           for (const Settings& tried : settings) {
-            const WhatIfAnswer answer = copy->ask(*moment, tried);
+            Trace trace;
+            const WhatIfAnswer answer = copy->ask(
+                *moment, tried, frames, [&](const Simulation& reached) { trace.add(meter.read(reached)); });
             outcome.points.push_back(pointOf(tried, answer));
+            outcome.points.back().trace = trace.samples();
             outcome.time = answer.time;
           }
           outcome.copy = std::move(copy);
@@ -366,8 +370,9 @@ bool WhatIfSession::poll(WhatIfModel& model, SimulationThread& simulation, const
   if (std::exchange(dropped_, false)) return true;
   copy_ = std::move(outcome.copy);
   moment_ = std::move(outcome.moment);
-  model.note =
-      !outcome.fault.empty() ? outcome.fault : "Five frames on from " + formatNumber("%.3f s", outcome.time);
+  model.note = !outcome.fault.empty() ? outcome.fault
+                                      : std::to_string(outcome.frames) + " frames on from " +
+                                            formatNumber("%.3f s", outcome.time);
   for (WhatIfPoint& point : outcome.points) model.points.push_back(std::move(point));
   return true;
 }

@@ -87,6 +87,10 @@ class SceneWatch {
 // A simulation on a thread of its own, so that an interface stays quick while a step is slow. UiCommands are
 // carried out between frames; finished frames are handed over as copies. No window, no OpenGL.
 
+/// The calling thread, and those that it starts from now on, let others go first where there are fewer
+/// processors than threads: a simulation takes what drawing leaves.
+void letOthersGoFirst();
+
 /// How fast frames may follow each other. The physics does not depend on a clock; this only waits between
 /// frames.
 enum class Pace { realTime, unlimited };
@@ -372,6 +376,7 @@ class WhatIfSession {
     std::shared_ptr<WhatIf> copy;
     std::shared_ptr<const StateImage> moment;
     double time = 0;  ///< of the moment (s)
+    int frames = 0;   ///< that it went on for
     std::vector<WhatIfPoint> points;
     std::string fault;
   };

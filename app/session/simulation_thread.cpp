@@ -1,6 +1,8 @@
 #include <exception>
 #include <utility>
 
+#include <sys/resource.h>
+
 #include "app/session/session.h"
 #include "core/base/messages.h"
 #include "core/io/save_file.h"
@@ -30,6 +32,12 @@ std::string noteOf(const char* done, const std::filesystem::path& file, double t
 }
 
 }  // namespace
+
+void letOthersGoFirst() {
+  constexpr int kNice = 10;
+  // Of this thread alone: Linux has one for each. Where it is refused everything works as well, and slower.
+  setpriority(PRIO_PROCESS, 0, kNice);
+}
 
 /// What makes the water's surface, and of what settings.
 struct SimulationThread::Water {

@@ -1,6 +1,7 @@
 #include "app/session/time_line.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -34,6 +35,7 @@ std::vector<std::string> changesBetween(const Settings& before, const Settings& 
 }
 
 void TimeLine::begin(Simulation& simulation) {
+  meter_.emplace(simulation.scene());
   std::map<int, Branch> branches;
   const auto run = branches.emplace(1, branchFrom(simulation, "run", 0, simulation.settings())).first;
   bytes_ = run->second.moments.begin()->second.bytes;
@@ -47,6 +49,7 @@ void TimeLine::reached(Simulation& simulation) {
   if (frame <= branch.last || simulation.stopped()) return;
   branch.last = frame;
   branch.end = simulation.time();
+  branch.trace.add(meter_->read(simulation));
   const auto& [kept, moment] = *branch.moments.rbegin();
   // Times are sums of time steps, and not exact.
   if (frame - kept < kMostFrames && branch.end - moment.time < kInterval * (1 - 1e-6)) return;
@@ -126,6 +129,7 @@ TimeLineView TimeLine::view(const Simulation& simulation) const {
     shown.from = branch.moments.begin()->second.time;
     shown.until = branch.end;
     for (const auto& [frame, moment] : branch.moments) shown.kept.push_back(moment.time);
+    shown.trace = branch.trace.samples();
   }
   return view;
 }
@@ -158,8 +162,9 @@ TimeLine::Moment TimeLine::momentOf(Simulation& simulation) {
 TimeLine::Branch TimeLine::branchFrom(Simulation& simulation, std::string name, int parent,
                                       const Settings& settings) {
   const long frame = simulation.frame();
-  Branch branch{std::move(name), parent, frame, frame, simulation.time(), settings, {}, {}};
+  Branch branch{std::move(name), parent, frame, frame, simulation.time(), settings, {}, {}, {}};
   branch.moments.emplace(frame, momentOf(simulation));
+  branch.trace.add(meter_->read(simulation));
   return branch;
 }
 
@@ -203,6 +208,78 @@ bool TimeLine::dropBranch() {
 void TimeLine::erase(Branch& branch, std::map<long, Moment>::iterator moment) {
   bytes_ -= moment->second.bytes;
   branch.moments.erase(moment);
+}
+
+namespace {
+
+/// The axis along which the scene is longest, of those that are level.
+Vec3d longestLevel(const Bounds& bounds, const Vec3d& up) {
+  Eigen::Index steepest = 0;
+  up.cwiseAbs().maxCoeff(&steepest);
+  Vec3d size = bounds.empty() || !bounds.size().allFinite() ? Vec3d::Ones() : bounds.size();
+  size[steepest] = -1;
+  Eigen::Index longest = 0;
+  size.maxCoeff(&longest);
+  return Vec3d::Unit(longest);
+}
+
+/// The least of direction . x within the bounds; 0 where they have no end.
+double leastAlong(const Vec3d& direction, const Bounds& bounds) {
+  const double least =
+      bounds.empty() ? 0 : direction.dot(bounds.center()) - 0.5 * direction.cwiseAbs().dot(bounds.size());
+  return std::isfinite(least) ? least : 0;
+}
+
+}  // namespace
+
+Meter::Meter(const Scene& scene) : halfSpacing_(0.5 * scene.particleSpacing) {
+  const Bounds bounds = scene.bounds();
+  if (scene.gravity.norm() > 0) up_ = -scene.gravity.normalized();
+  along_ = longestLevel(bounds, up_);
+  Bounds fluid;
+  for (const auto& source : scene.fluid) fluid.include(source->bounds());
+  if (!bounds.empty() && !fluid.empty() && along_.dot(fluid.center() - bounds.center()) > 0) along_ = -along_;
+  floor_ = leastAlong(up_, bounds);
+  end_ = leastAlong(along_, bounds);
+}
+
+MeasureSample Meter::read(const Simulation& simulation) const {
+  const FrameView view = simulation.view();
+  MeasureSample sample;
+  sample.time = simulation.time();
+  sample.values.fill(std::numeric_limits<float>::quiet_NaN());
+  const auto put = [&sample](RunMeasure measure, double value) {
+    sample.values[static_cast<std::size_t>(measure)] = static_cast<float>(value);
+  };
+  double sum = 0, farthest = -std::numeric_limits<double>::infinity();
+  for (const Float4& p : view.positions) {
+    const Vec3d place = p.xyz().cast<double>();
+    sum += up_.dot(place);
+    farthest = std::max(farthest, along_.dot(place));
+  }
+  if (!view.positions.empty()) {
+    put(RunMeasure::height, 2 * (sum / static_cast<double>(view.positions.size()) - floor_));
+    put(RunMeasure::front, farthest + halfSpacing_ - end_);
+  }
+  if (view.info.steps == 0) return sample;
+  if (!view.info.errors.empty()) put(RunMeasure::densityError, 100 * view.info.errors.back().mean);
+  put(RunMeasure::iterations, view.info.iterations);
+  put(RunMeasure::milliseconds, 1e3 * view.info.stepSeconds);
+  return sample;
+}
+
+void Trace::add(const MeasureSample& sample) {
+  last_ = sample;
+  thinning_.add(history_, sample);
+  shown_.reset();
+}
+
+MeasureSamples Trace::samples() const {
+  if (shown_ != nullptr) return shown_;
+  auto all = std::make_shared<std::vector<MeasureSample>>(history_);
+  if (!all->empty() && all->back().time < last_.time) all->push_back(last_);
+  shown_ = std::move(all);
+  return shown_;
 }
 
 }  // namespace migiwa

@@ -12,11 +12,43 @@
 #include "app/session/ui_state.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/state.h"
+#include "core/simulation/statistics.h"
 
 namespace migiwa {
 
 /// Where settings differ, as changesBetween() says it of two scenes; empty: nowhere.
 std::vector<std::string> changesBetween(const Settings& before, const Settings& now);
+
+class Meter {
+ public:
+  explicit Meter(const Scene& scene);
+
+  /// height: twice that of the centre of mass above the lowest place of the scene, which is the level of
+  /// water at rest in an upright tank (m). front: how far the farthest fluid has come along the longest level
+  /// side of the scene, from the end where the fluid began (m). The others are those of the last step.
+  MeasureSample read(const Simulation& simulation) const;
+
+ private:
+  Vec3d up_ = Vec3d::UnitY(), along_ = Vec3d::UnitX();
+  double floor_ = 0, end_ = 0;  ///< where height and front are zero (m)
+  double halfSpacing_;          ///< (m)
+};
+
+/// Samples of one run, thinned where they are many.
+class Trace {
+ public:
+  void add(const MeasureSample& sample);
+  /// With the last sample; the same object until another is added.
+  MeasureSamples samples() const;
+
+ private:
+  static constexpr std::size_t kMost = 1024;
+
+  std::vector<MeasureSample> history_;
+  Thinning thinning_{kMost};
+  MeasureSample last_;
+  mutable MeasureSamples shown_;
+};
 
 class TimeLine {
  public:
@@ -78,17 +110,19 @@ class TimeLine {
     Settings settings;         ///< with which it came to its first frame
     std::map<long, TimeLineView::Change> changes;
     std::map<long, Moment> moments;  ///< the first frame's is always there
+    Trace trace;
   };
 
   static Moment momentOf(Simulation& simulation);
   void tellHistory(const Simulation& simulation, TimeLineView& view) const;
-  static Branch branchFrom(Simulation& simulation, std::string name, int parent, const Settings& settings);
+  Branch branchFrom(Simulation& simulation, std::string name, int parent, const Settings& settings);
   void fitLimit();
   bool thin();
   bool dropBranch();
   void erase(Branch& branch, std::map<long, Moment>::iterator moment);
 
   std::size_t limit_, bytes_ = 0;
+  std::optional<Meter> meter_;  ///< of the scene that was begun with
   int branch_ = 0, newest_ = 0;
   std::map<int, Branch> branches_;  ///< by number, from 1 in the order in which they began
 };

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core/simulation/frame_view.h"
 #include "core/simulation/scene_section.h"
 #include "core/simulation/simulation.h"
+#include "core/study/study.h"
 
 namespace migiwa {
 
@@ -23,6 +25,24 @@ struct WhatIfModel;
 class StageHistory;
 class UndoHistory;
 
+// What is measured at the end of every frame of a run, to be plotted over its time.
+
+enum class RunMeasure { height, front, densityError, iterations, milliseconds };
+inline constexpr std::size_t kMeasureCount = 5;
+inline constexpr std::array<std::string_view, kMeasureCount> kMeasureNames{"height", "front", "density error",
+                                                                           "iterations", "time of a step"};
+inline constexpr std::array<std::string_view, kMeasureCount> kMeasureUnits{"m", "m", "%", "1", "ms"};
+
+struct MeasureSample {
+  double time = 0;  ///< (s)
+  /// By RunMeasure; not a number where there is nothing to measure, as before the first step.
+  std::array<float, kMeasureCount> values{};
+
+  float operator[](RunMeasure measure) const { return values[static_cast<std::size_t>(measure)]; }
+};
+
+using MeasureSamples = std::shared_ptr<const std::vector<MeasureSample>>;
+
 /// The past of the run that can be gone back to, and where in it the run is.
 struct TimeLineView {
   struct Branch {
@@ -30,6 +50,7 @@ struct TimeLineView {
     std::string name;            ///< what was changed where it began, such as "/solver/tolerance=0.01"
     double from = 0, until = 0;  ///< (s)
     std::vector<double> kept;    ///< times of the states that are kept (s)
+    MeasureSamples trace{};      ///< from its beginning on
   };
   std::vector<Branch> branches;  ///< in the order in which they began; none: not offered
   int branch = 0;                ///< the number of the present one
@@ -86,6 +107,12 @@ struct SectionView {
   }
 };
 
+enum class Theme { dark, light };
+inline constexpr std::array<std::string_view, 2> kThemeNames{"dark", "light"};
+/// Of particles and sections; both are for colour-blind eyes, too: they grow lighter in equal steps.
+enum class ColorScale { cool, warm };
+inline constexpr std::array<std::string_view, 2> kColorScaleNames{"blue to yellow", "plum to cream"};
+
 /// How the scene is looked at.
 struct ViewState {
   Camera camera;
@@ -96,6 +123,10 @@ struct ViewState {
   bool panels = true;
   bool water = false;  ///< the fluid's surface in place of its particles
   SectionView section{};
+  Theme theme = Theme::dark;
+  ColorScale scale = ColorScale::cool;
+  /// Of the plot over time: a RunMeasure, or kMeasureCount for all.
+  std::size_t plotted = static_cast<std::size_t>(RunMeasure::front);
 
   bool operator==(const ViewState&) const = default;
 };
@@ -251,11 +282,13 @@ struct WhatIfPoint {
   double iterations = 0;
   std::optional<double> densityError, gammaError;  ///< against the reference, mean
   std::string trouble;                             ///< why it could not go on
+  MeasureSamples trace{};                          ///< of its frames
 };
 
 struct WhatIfModel {
   Settings asked;  ///< what the form says
   bool ask = false, clear = false;
+  int frames = WhatIf::kFrames;  ///< that the next one goes on for
   bool busy = false;
   bool follows = true;              ///< the form has not been touched: it says what the run has
   std::string note;                 ///< what is going on

@@ -57,6 +57,12 @@ std::string viewChange(const ViewState& before, const ViewState& now) {
   if (before.clip.enabled != now.clip.enabled) return onOff("cut", now.clip.enabled);
   if (before.clip != now.clip) return formatNumber("cut at %.4g m", now.clip.at);
   if (before.section != now.section) return sectionChange(before.section, now.section);
+  if (before.theme != now.theme)
+    return "theme: " + std::string(kThemeNames[static_cast<std::size_t>(now.theme)]);
+  if (before.scale != now.scale)
+    return "colours: " + std::string(kColorScaleNames[static_cast<std::size_t>(now.scale)]);
+  if (before.plotted != now.plotted)
+    return "plot: " + std::string(now.plotted < kMeasureCount ? kMeasureNames[now.plotted] : "all measures");
   return before.camera == now.camera ? "" : "camera";
 }
 

@@ -73,13 +73,13 @@ void costChart(std::span<const WhatIfPoint> points, float height) {
     return ImVec2(left + (right - left) * cost.share(milliseconds),
                   bottom + (top - bottom) * error.share(percent));
   };
-  draw->AddRectFilled({left, top}, {right, bottom}, theme::kWell, 3);
+  draw->AddRectFilled({left, top}, {right, bottom}, theme::well(), 3);
   for (const double value : error.ticks()) {
     gridLine(draw, left, right, std::round(at(cost.low, value).y), formatNumber("%g", value));
   }
   for (const double value : cost.ticks()) {
     const float x = std::round(at(value, error.low).x);
-    draw->AddLine({x, top}, {x, bottom}, theme::kGridLine);
+    draw->AddLine({x, top}, {x, bottom}, theme::gridLine());
     const std::string text = formatNumber("%g", value);
     draw->AddText({std::round(x - 0.5F * ImGui::CalcTextSize(text.c_str()).x), bottom + 2}, faint,
                   text.c_str());
@@ -91,112 +91,15 @@ void costChart(std::span<const WhatIfPoint> points, float height) {
   const std::vector<std::size_t> front = paretoFront(measured);
   for (std::size_t k = 0; k + 1 < front.size(); ++k) {
     const Shown &from = shown[front[k]], &to = shown[front[k + 1]];
-    draw->AddLine(at(from.milliseconds, from.percent), at(to.milliseconds, to.percent), theme::kAccent);
+    draw->AddLine(at(from.milliseconds, from.percent), at(to.milliseconds, to.percent), theme::accent());
   }
   for (const Shown& point : shown) {
     const ImVec2 place = at(point.milliseconds, point.percent);
-    const ImU32 color = point.number == 0 ? theme::kAlert : theme::kAccent;
+    const ImU32 color = point.number == 0 ? theme::alert() : theme::accent();
     draw->AddCircleFilled(place, 0.25F * size, color);
     const std::string number = std::to_string(point.number + 1);
     draw->AddText({place.x + 0.4F * size, place.y - 1.1F * size}, color, number.c_str());
   }
-}
-
-namespace {
-
-/// Of the values of a plot.
-struct ValueRange {
-  double low = 0, high = 0;
-  void include(double value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value), high = std::max(high, value);
-  }
-};
-
-void polyline(ImDrawList* draw, const std::vector<ImVec2>& points, ImU32 color) {
-  draw->AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, 1.5F);
-}
-
-/// Values over the time from 0 to `last` (s): draws the axes, and says where curves go.
-class TimePlot {
- public:
-  TimePlot(const ImVec2& corner, float width, float height, ValueRange range, double last)
-      : range_(range), last_(std::max(last, 1e-9)) {
-    const float size = ImGui::GetFontSize();
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-    if (range_.high - range_.low <= 0) range_.high = range_.low + 1;
-    const double room = 0.06 * (range_.high - range_.low);
-    range_.low -= room, range_.high += room;
-    const Ticks ticks = roundTicks(range_.low, range_.high, 3);
-    const std::string format = "%." + std::to_string(ticks.decimals) + "f";
-    float labels = 0;
-    for (const double v : ticks.values)
-      labels = std::max(labels, ImGui::CalcTextSize(formatNumber(format.c_str(), v).c_str()).x);
-    low_ = {std::round(corner.x + labels + 0.5F * size), corner.y + height - std::round(1.25F * size)};
-    high_ = {corner.x + width - std::round(0.5F * size), corner.y + std::round(0.5F * size)};
-    draw->AddRectFilled({low_.x, high_.y}, {high_.x, low_.y}, theme::kWell, 3);
-    for (const double v : ticks.values) {
-      gridLine(draw, low_.x, high_.x, std::round(at(0, v).y), formatNumber(format.c_str(), v));
-    }
-    const std::string end = formatNumber("%.2f s", last);
-    draw->AddText({low_.x, low_.y + 2}, faint, "0 s");
-    draw->AddText({std::round(high_.x - ImGui::CalcTextSize(end.c_str()).x), low_.y + 2}, faint, end.c_str());
-  }
-
-  ImVec2 at(double time, double value) const {
-    return {
-        low_.x + (high_.x - low_.x) * static_cast<float>(time / last_),
-        low_.y + (high_.y - low_.y) * static_cast<float>((value - range_.low) / (range_.high - range_.low))};
-  }
-
- private:
-  ValueRange range_;
-  double last_;
-  ImVec2 low_, high_;
-};
-
-}  // namespace
-
-void gaugePlot(std::span<const GaugeSample> samples, float height) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({width, height});
-  if (samples.empty()) return;
-  ValueRange range{samples.front().value, samples.front().value};
-  for (const GaugeSample& one : samples) range.include(one.value);
-  const TimePlot plot(corner, width, height, range, samples.back().time);
-  std::vector<ImVec2> points;
-  for (const GaugeSample& one : samples)
-    if (std::isfinite(one.value)) points.push_back(plot.at(one.time, one.value));
-  polyline(ImGui::GetWindowDrawList(), points, theme::kAccent);
-}
-
-void energyPlot(std::span<const EnergySample> samples, float height) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({width, height});
-  if (samples.empty()) return;
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-
-  const double start = samples.front().source;
-  ValueRange range;
-  for (const EnergySample& at : samples) {
-    range.include(at.kinetic);
-    range.include(at.kinetic + at.potential - start);
-    range.include(at.source - start);
-  }
-  const TimePlot plot(corner, width, height, range, samples.back().time);
-  std::vector<ImVec2> kinetic, whole, given;
-  for (const EnergySample& one : samples) {
-    if (!std::isfinite(one.kinetic + one.potential)) continue;
-    kinetic.push_back(plot.at(one.time, one.kinetic));
-    whole.push_back(plot.at(one.time, one.kinetic + one.potential - start));
-    given.push_back(plot.at(one.time, one.source - start));
-  }
-  polyline(draw, given, theme::kAlert);
-  polyline(draw, kinetic, theme::kMotion);
-  polyline(draw, whole, theme::kAccent);
 }
 
 namespace {
@@ -243,7 +146,7 @@ void errorPlot(std::span<const IterationError> errors, double tolerance, float h
                   {corner.x + width - std::round(0.5F * size), corner.y + top},
                   std::max<double>(1, static_cast<double>(errors.size()) - 1),
                   most};
-  draw->AddRectFilled({plot.low.x, plot.high.y}, {plot.high.x, plot.low.y}, theme::kWell, 3);
+  draw->AddRectFilled({plot.low.x, plot.high.y}, {plot.high.x, plot.low.y}, theme::well(), 3);
   for (const double v : ticks.values) {
     const float y = std::round(plot.at(0, v).y);
     gridLine(draw, plot.low.x, plot.high.x, y, formatNumber(format.c_str(), v));
@@ -256,19 +159,19 @@ void errorPlot(std::span<const IterationError> errors, double tolerance, float h
   labelBelow(0.5F * (plot.low.x + plot.high.x), 0.5F, "iteration");
   labelBelow(plot.high.x, 1, std::to_string(static_cast<int>(plot.iterations)));
 
-  dashedLine(draw, plot.at(0, tolerance), plot.high.x, theme::kAlert);
+  dashedLine(draw, plot.at(0, tolerance), plot.high.x, theme::alert());
   for (std::size_t i = 0; i + 1 < errors.size(); ++i) {
     draw->AddLine(plot.at(static_cast<double>(i), errors[i].mean),
-                  plot.at(static_cast<double>(i + 1), errors[i + 1].mean), theme::kAccent, 1.5F);
+                  plot.at(static_cast<double>(i + 1), errors[i + 1].mean), theme::accent(), 1.5F);
   }
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    draw->AddCircleFilled(plot.at(static_cast<double>(i), errors[i].mean), 0.17F * size, theme::kAccent);
+    draw->AddCircleFilled(plot.at(static_cast<double>(i), errors[i].mean), 0.17F * size, theme::accent());
   }
 }
 
 void gridLine(ImDrawList* draw, float left, float right, float y, const std::string& label) {
   const float size = ImGui::GetFontSize(), width = ImGui::CalcTextSize(label.c_str()).x;
-  draw->AddLine({left, y}, {right, y}, theme::kGridLine);
+  draw->AddLine({left, y}, {right, y}, theme::gridLine());
   draw->AddText({left - 0.4F * size - width, y - 0.5F * size - 1}, ImGui::GetColorU32(ImGuiCol_TextDisabled),
                 label.c_str());
 }
@@ -304,7 +207,7 @@ void stageBar(const StageTimes& times, bool timings) {
   const float size = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float height = std::round(0.85F * size);
-  draw->AddRectFilled(corner, {corner.x + width, corner.y + height}, theme::kWell, 3);
+  draw->AddRectFilled(corner, {corner.x + width, corner.y + height}, theme::well(), 3);
   if (timings && total > 0) {
     float x = corner.x;
     for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -348,7 +251,7 @@ void stageChart(const StageHistory& history, float height) {
   ImGui::Dummy({width, height});
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const float left = std::round(corner.x + 2.2F * size), right = corner.x + width, bottom = corner.y + height;
-  draw->AddRectFilled({left, corner.y}, {right, bottom}, theme::kWell, 3);
+  draw->AddRectFilled({left, corner.y}, {right, bottom}, theme::well(), 3);
   if (frames.empty()) return;
 
   // One frame that was held up does not flatten all others.
@@ -381,7 +284,7 @@ void stageChart(const StageHistory& history, float height) {
   const Ticks ticks = roundTicks(0, most, 2);
   for (const double value : ticks.values) {
     const float y = std::round(bottom - heightOf(value));
-    draw->AddLine({left, y}, {right, y}, theme::kGridLine);
+    draw->AddLine({left, y}, {right, y}, theme::gridLine());
     const std::string text = formatNumber(("%." + std::to_string(ticks.decimals) + "f").c_str(), value);
     draw->AddText({left - 0.4F * size - ImGui::CalcTextSize(text.c_str()).x,
                    std::clamp(y - 0.5F * size, corner.y, bottom - size)},

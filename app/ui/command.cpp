@@ -29,7 +29,7 @@ void commandWindow(CommandModel& model, const Rect& area, const Fonts& fonts) {
     ImGui::PushFont(fonts.mono);
     ImGui::TextWrapped("%s", model.text.c_str());
     ImGui::PopFont();
-    ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+    ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
     for (const std::string& line : model.lacks) ImGui::TextWrapped("%s", line.c_str());
     ImGui::PopStyleColor();
     if (ImGui::Button("Copy again")) model.copy = true;

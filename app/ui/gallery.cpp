@@ -14,7 +14,6 @@ namespace {
 constexpr float kCard = 15;            // least width over the height of the text
 constexpr float kPicture = 9.0F / 16;  // height over width
 constexpr float kDescription = 2.7F;   // lines
-constexpr ImU32 kCardInk = IM_COL32(225, 230, 236, 255), kFaintCardInk = IM_COL32(150, 162, 176, 255);
 
 /// Returns whether it was clicked.
 bool card(const GalleryEntry& entry, const Fonts& fonts, float width) {
@@ -30,16 +29,17 @@ bool card(const GalleryEntry& entry, const Fonts& fonts, float width) {
   if (entry.texture != 0) {
     draw->AddImage(reinterpret_cast<ImTextureID>(entry.texture), corner, {end.x, corner.y + picture});
   } else {
-    draw->AddRectFilled(corner, {end.x, corner.y + picture}, theme::kWell, 4);
-    draw->AddText({corner.x + gap, corner.y + gap}, kFaintCardInk, "no picture");
+    draw->AddRectFilled(corner, {end.x, corner.y + picture}, theme::well(), 4);
+    draw->AddText({corner.x + gap, corner.y + gap}, ImGui::GetColorU32(ImGuiCol_TextDisabled), "no picture");
   }
-  if (hovered) draw->AddRect(corner, end, theme::kAccent, 4, 0, 2);
+  if (hovered) draw->AddRect(corner, end, theme::accent(), 4, 0, 2);
   const float y = corner.y + picture + std::round(0.2F * text);
   draw->PushClipRect(corner, {end.x - gap, end.y - 2}, true);
-  draw->AddText(fonts.bold, text, {corner.x + gap, y}, kCardInk, entry.name.c_str());
+  draw->AddText(fonts.bold, text, {corner.x + gap, y}, ImGui::GetColorU32(ImGuiCol_Text), entry.name.c_str());
   const float small = std::round(0.86F * text);
-  draw->AddText(fonts.regular, small, {corner.x + gap, y + 1.25F * text}, kFaintCardInk,
-                entry.description.c_str(), nullptr, width - 2 * gap);
+  draw->AddText(fonts.regular, small, {corner.x + gap, y + 1.25F * text},
+                ImGui::GetColorU32(ImGuiCol_TextDisabled), entry.description.c_str(), nullptr,
+                width - 2 * gap);
   draw->PopClipRect();
   if (hovered) {
     ImGui::BeginTooltip();
@@ -90,7 +90,7 @@ void fileRow(GalleryModel& model) {
     if (ImGui::SmallButton("Cancel")) model.cancel = true;
   }
   if (model.faults.empty()) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
   for (const std::string& fault : model.faults) ImGui::TextWrapped("%s", fault.c_str());
   ImGui::PopStyleColor();
 }

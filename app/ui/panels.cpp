@@ -55,20 +55,6 @@ namespace {
 /// The panels below are not to be pushed out of sight.
 constexpr std::size_t kMostFaultsShown = 4;
 
-/// The text as far as it fits into the width (pixels), with an ellipsis for what does not.
-std::string fitted(std::string text, float width) {
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-  const std::string ellipsis = "…";
-  const auto continues = [&] {
-    return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U;
-  };
-  while (!text.empty() && ImGui::CalcTextSize((text + ellipsis).c_str()).x > width) {
-    while (continues()) text.pop_back();
-    if (!text.empty()) text.pop_back();
-  }
-  return text + ellipsis;
-}
-
 }  // namespace
 
 void scenePanel(PanelModel& model) {
@@ -90,7 +76,7 @@ void scenePanel(PanelModel& model) {
   faintText(fitted(editor.fileName, ImGui::GetContentRegionAvail().x));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", editor.fileName.c_str());
   if (editor.faults.empty()) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
   ImGui::TextWrapped("Not taken over, the scene before it goes on:");
   const std::size_t listed = std::min(editor.faults.size(), kMostFaultsShown);
   for (std::size_t k = 0; k < listed; ++k) {
@@ -108,7 +94,7 @@ namespace {
 /// What hinders is listed as far as the panels below stay in sight.
 
 void listFaults(const std::string& title, const std::vector<std::string>& faults) {
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
   ImGui::TextWrapped("%s", title.c_str());
   const std::size_t listed = std::min(faults.size(), kMostFaultsShown);
   for (std::size_t k = 0; k < listed; ++k) ImGui::TextWrapped("%s", faults[k].c_str());
@@ -154,7 +140,7 @@ void simulationPanel(PanelModel& model) {
   rowLabel("Time");
   ImGui::TextUnformatted((formatNumber("%.3f s", model.frame.time) + (held ? ", waits" : "")).c_str());
   if (model.run.stopped) {
-    ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+    ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
     ImGui::TextWrapped("Stopped: %s", model.run.trouble.c_str());
     ImGui::PopStyleColor();
   }
@@ -163,7 +149,7 @@ void simulationPanel(PanelModel& model) {
   // As with the scene's text: only where there is a file beside which the state can lie.
   if (model.editor != nullptr) stateButtons(model);
   if (run.refused.empty()) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
   ImGui::TextWrapped("%s", run.refused.c_str());
   ImGui::PopStyleColor();
 }
@@ -177,6 +163,7 @@ void solverPanel(PanelModel& model) {
     solver.maxIterations = std::max(solver.maxIterations, solver.minIterations);
     changed = true;
   }
+  keyHint("/solver/min_iterations");
   changed |= maxIterationsRow(solver);
   changed |= toleranceRow(solver);
   rowLabel("Method");
@@ -185,13 +172,7 @@ void solverPanel(PanelModel& model) {
     solver.takeMethod(static_cast<SolverMethod>(method));
     changed = true;
   }
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "pbf: Position Based Fluids\n"
-        "wcsph: a stiff equation of state, many short steps\n"
-        "pcisph: pressures that grow by the density that they lead to\n"
-        "dfsph: density and divergence, a solve each\n"
-        "Kernel, support radius and tolerance change with it");
+  keyHint("/solver/method");
   ImGui::BeginDisabled(solver.method != SolverMethod::pbf);
   rowLabel("Velocities");
   int from = static_cast<int>(solver.velocityStep);
@@ -199,17 +180,14 @@ void solverPanel(PanelModel& model) {
     solver.takeVelocities(static_cast<VelocityStep>(from));
     changed = true;
   }
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "positions: from how far the constraint has moved particles (PBF)\n"
-        "projection: from a pressure; waves keep their height, a step takes 1.4 to 1.8 times the time\n"
-        "Kernel, support radius and tolerance change with it");
+  keyHint("/solver/velocity_step");
   rowLabel("Position step");
   int step = static_cast<int>(solver.positionStep);
   if (choice("##position", step, kPositionStepNames)) {
     solver.positionStep = static_cast<PositionStep>(step);
     changed = true;
   }
+  keyHint("/solver/position_step");
   ImGui::EndDisabled();
   rowLabel("Time step");
   double milliseconds = 1e3 * solver.timeStep;
@@ -217,6 +195,7 @@ void solverPanel(PanelModel& model) {
     solver.timeStep = milliseconds / 1e3;
     changed = true;
   }
+  keyHint("/solver/time_step");
 }
 
 void viewPanel(PanelModel& model) {
@@ -229,6 +208,12 @@ void viewPanel(PanelModel& model) {
   ImGui::EndDisabled();
   ImGui::SameLine();
   ImGui::Checkbox("Water", &view.water);
+
+  rowLabel("Colours");
+  int scale = static_cast<int>(view.scale);
+  if (choice("##scale", scale, kColorScaleNames)) view.scale = static_cast<ColorScale>(scale);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Both grow lighter in equal steps, for colour-blind eyes, too");
 
   const auto along = [](Axis axis) { return static_cast<Eigen::Index>(axis); };
   rowLabel("Cut");
@@ -261,6 +246,10 @@ void viewPanel(PanelModel& model) {
     ImGui::SameLine();
     faintText("the balls of SLIM walls");
   }
+
+  rowLabel("Theme");
+  int theme = static_cast<int>(view.theme);
+  if (choice("##theme", theme, kThemeNames)) view.theme = static_cast<Theme>(theme);
 
   const float width = buttonWidth(2);
   if (ImGui::Button("Reset camera", {width, 0})) view.camera = model.scene.view.camera;
@@ -365,9 +354,9 @@ void energyPanel(PanelModel& model) {
   if (model.frame.energy.empty()) return;
   const EnergySample& now = model.frame.energy.back();
   const double start = model.frame.energy.front().source;
-  energyRow("Given", theme::kAlert, now.source - start);
-  energyRow("Kinetic", theme::kMotion, now.kinetic);
-  energyRow("With potential", theme::kAccent, now.kinetic + now.potential - start);
+  energyRow("Given", theme::alert(), now.source - start);
+  energyRow("Kinetic", theme::motion(), now.kinetic);
+  energyRow("With potential", theme::accent(), now.kinetic + now.potential - start);
   faintText("From the start, over the mass");
   energyPlot(model.frame.energy, std::floor(7 * ImGui::GetFontSize()));
 }
@@ -421,6 +410,14 @@ void whatIfPanel(PanelModel& model) {
   WhatIfModel& whatIf = *model.whatIf;
   if (whatIf.follows) whatIf.asked = model.settings;
   if (form(whatIf.asked)) whatIf.follows = false;
+  // Points of one chart go on for equally long.
+  ImGui::BeginDisabled(!whatIf.points.empty() || whatIf.busy);
+  rowLabel("Frames");
+  ImGui::SliderInt("##frames", &whatIf.frames, WhatIf::kFrames, 400, "%d", kLogSlider);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Frames that the copy goes on for, %d to 400; the run waits until they are done",
+                      WhatIf::kFrames);
+  ImGui::EndDisabled();
 
   const float width = buttonWidth(2);
   ImGui::BeginDisabled(whatIf.busy);
@@ -430,7 +427,7 @@ void whatIfPanel(PanelModel& model) {
   ImGui::BeginDisabled(whatIf.points.empty() || whatIf.busy);
   if (ImGui::Button("Clear", {width, 0})) whatIf.clear = true;
   ImGui::EndDisabled();
-  faintText(!whatIf.note.empty() ? whatIf.note : "The state of now, five frames on, on a copy");
+  faintText(!whatIf.note.empty() ? whatIf.note : "The state of now and on from there, on a copy");
   if (whatIf.points.empty()) return;
 
   costChart(whatIf.points, std::floor(11 * ImGui::GetFontSize()));

@@ -12,7 +12,7 @@ namespace migiwa {
 namespace {
 
 constexpr ImU32 kFaultyLine = IM_COL32(255, 143, 115, 46);
-constexpr ImU32 kCaretLine = IM_COL32(255, 255, 255, 10);
+constexpr ImU32 kCaretLine = IM_COL32(128, 140, 150, 30);
 constexpr int kMostListed = 6;
 
 /// Where a line, counted from 1, begins.
@@ -50,12 +50,12 @@ void drawLines(const SceneEditor& editor, ImVec2 origin, float lineHeight, float
     if (line == editor.caretLine) draw.AddRectFilled({origin.x, y}, {right, y + lineHeight}, kCaretLine);
     if (faulty) {
       draw.AddRectFilled({origin.x, y}, {right, y + lineHeight}, kFaultyLine);
-      draw.AddRectFilled({origin.x, y}, {origin.x + 3, y + lineHeight}, theme::kAlert);
+      draw.AddRectFilled({origin.x, y}, {origin.x + 3, y + lineHeight}, theme::alert());
     }
     const std::string number = std::to_string(line);
     const float width = ImGui::CalcTextSize(number.c_str()).x;
     draw.AddText({origin.x + gutter - width - 0.6F * lineHeight, y},
-                 faulty ? theme::kAlert : ImGui::GetColorU32(ImGuiCol_TextDisabled), number.c_str());
+                 faulty ? theme::alert() : ImGui::GetColorU32(ImGuiCol_TextDisabled), number.c_str());
   }
 }
 
@@ -71,7 +71,7 @@ void focusText([[maybe_unused]] const char* name) {
 
 /// The text is as high as its lines, inside a part that scrolls, so that lines and their numbers move as one.
 void textWithLines(SceneEditor& editor, float height, ImFont* mono) {
-  ImGui::PushStyleColor(ImGuiCol_ChildBg, theme::kWell);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, theme::well());
   ImGui::BeginChild("##lines", {0, height});
   ImGui::PushFont(mono);
   const float lineHeight = ImGui::GetFontSize();
@@ -108,7 +108,7 @@ void textWithLines(SceneEditor& editor, float height, ImFont* mono) {
 /// A click moves the caret to the line.
 void faultList(SceneEditor& editor, float height) {
   ImGui::BeginChild("##faults", {0, height});
-  ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+  ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
   for (std::size_t k = 0; k < editor.faults.size(); ++k) {
     const SceneEditor::Fault& fault = editor.faults[k];
     const std::string shown =

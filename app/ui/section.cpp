@@ -93,7 +93,7 @@ void sectionPanel(PanelModel& model) {
     faintText(note);
   };
   if (!section.fault.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, theme::kAlert);
+    ImGui::PushStyleColor(ImGuiCol_Text, theme::alert());
     ImGui::TextWrapped("%s", section.fault.c_str());
     ImGui::PopStyleColor();
   } else if (!section.raster) {

@@ -25,7 +25,7 @@ void histogram(const FieldSpread& spread, const std::string& unit, float height)
   const float left = std::round(corner.x + ImGui::CalcTextSize(groupedDigits(most).c_str()).x + 0.6F * size),
               right = corner.x + width - std::round(0.5F * size);
   const float top = corner.y + std::round(0.5F * size), bottom = corner.y + height - std::round(1.25F * size);
-  draw->AddRectFilled({left, top}, {right, bottom}, theme::kWell, 3);
+  draw->AddRectFilled({left, top}, {right, bottom}, theme::well(), 3);
   gridLine(draw, left, right, top, groupedDigits(most));
   gridLine(draw, left, right, bottom, "0");
   const float bar = (right - left) / static_cast<float>(FieldSpread::kBins);
@@ -33,7 +33,7 @@ void histogram(const FieldSpread& spread, const std::string& unit, float height)
     const float share = static_cast<float>(spread.bins[k]) / static_cast<float>(most);
     const float x = left + bar * static_cast<float>(k);
     draw->AddRectFilled({x + 0.5F, bottom - share * (bottom - top)}, {x + bar - 0.5F, bottom},
-                        theme::kAccent);
+                        theme::accent());
   }
   const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
   const std::string low = formatNumber("%.4g", spread.least),

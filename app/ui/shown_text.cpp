@@ -67,24 +67,49 @@ std::string shownText() {
   return lettersShown().text;
 }
 
-std::optional<std::array<float, 2>> placeOfText(const std::string& words, bool uppermost) {
-  const ShownLetters all = lettersShown();
-  const std::string alone = ' ' + words + ' ';
-  const std::size_t at = uppermost ? all.text.rfind(alone) : all.text.find(alone);
-  if (at == std::string::npos) return std::nullopt;
-  return all.places[at + 1 + words.size() / 2];
+namespace {
+
+bool isIn(const std::string& panel, float y) {
+  const auto places = panelPlaces();
+  return panel.empty() || std::any_of(places.begin(), places.end(), [&](const PanelPlace& place) {
+           return place.title == panel && y >= place.top && y < place.bottom;
+         });
 }
 
-std::optional<std::array<float, 2>> placeOfWidget(const std::string& name, std::optional<double> share) {
+}  // namespace
+
+std::optional<std::array<float, 2>> placeOfText(const std::string& words, bool uppermost,
+                                                const std::string& panel) {
+  const ShownLetters all = lettersShown();
+  const std::string alone = ' ' + words + ' ';
+  const auto from = [&](std::size_t at) {
+    return uppermost ? all.text.rfind(alone, at) : all.text.find(alone, at);
+  };
+  for (std::size_t at = from(uppermost ? std::string::npos : 0); at != std::string::npos;
+       at = uppermost && at == 0 ? std::string::npos : from(uppermost ? at - 1 : at + 1)) {
+    const std::array<float, 2> place = all.places[at + 1 + words.size() / 2];
+    if (isIn(panel, place[1])) return place;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> openPanels() {
+  std::vector<std::string> titles;
+  for (const PanelPlace& place : panelPlaces()) titles.push_back(place.title);
+  return titles;
+}
+
+std::optional<std::array<float, 2>> placeOfWidget(const std::string& name, std::optional<double> share,
+                                                  const std::string& panel) {
   for (const RowPlace& row : rowPlaces()) {
-    if (row.label != name) continue;
+    if (row.label != name || (!panel.empty() && row.panel != panel)) continue;
     // A checkbox is as wide as the row is high.
     const float margin = 0.5F * row.height;
     const float x = row.x + static_cast<float>(share.value_or(0.5)) * row.width;
     return {{std::clamp(x, row.x + margin, std::max(row.x + row.width - margin, row.x + margin)),
              row.y + margin}};
   }
-  return placeOfText(name);
+  return placeOfText(name, false, panel);
 }
 
 std::vector<std::string> namesLike(const std::string& name, std::size_t most) {

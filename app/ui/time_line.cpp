@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kMostRows = 4;
 constexpr float kRow = 1.35F, kAxis = 1.2F, kPadding = 0.4F;  // over the height of the text
 constexpr float kButtons = 9.4F;
-constexpr ImU32 kRun = IM_COL32(71, 184, 172, 90), kOther = IM_COL32(140, 155, 175, 60),
-                kKept = IM_COL32(255, 255, 255, 70), kRowInk = IM_COL32(230, 235, 240, 255);
+constexpr ImU32 kRun = IM_COL32(71, 184, 172, 90), kOther = IM_COL32(140, 155, 175, 60);
+constexpr float kKept = 0.3F;  ///< how much of the text's colour the marks of states have
 
 /// Times over pixels.
 struct TimeScale {
@@ -38,24 +38,26 @@ void drawRow(const TimeLineView& line, const TimeLineView::Branch& branch, const
   ImDrawList* draw = ImGui::GetWindowDrawList();
   const bool present = branch.number == line.branch;
   const float bottom = top + height;
-  draw->AddRectFilled({scale.left, top}, {scale.left + scale.width, bottom}, theme::kWell, 3);
+  draw->AddRectFilled({scale.left, top}, {scale.left + scale.width, bottom}, theme::well(), 3);
   draw->AddRectFilled({scale.at(branch.from), top},
                       {std::max(scale.at(branch.until), scale.at(branch.from) + 1), bottom},
                       present ? kRun : kOther, 3);
   for (const double kept : branch.kept) {
     const float x = std::floor(scale.at(kept));
-    draw->AddRectFilled({x, bottom - 0.25F * height}, {x + 1, bottom}, kKept);
+    draw->AddRectFilled({x, bottom - 0.25F * height}, {x + 1, bottom},
+                        ImGui::GetColorU32(ImGuiCol_Text, kKept));
   }
   const float text = ImGui::GetFontSize();
   draw->PushClipRect({scale.left, top}, {scale.left + scale.width, bottom}, true);
-  draw->AddText({scale.left + 0.4F * text, std::round(top + 0.5F * (height - text) - 1)}, kRowInk,
+  draw->AddText({scale.left + 0.4F * text, std::round(top + 0.5F * (height - text) - 1)},
+                ImGui::GetColorU32(ImGuiCol_Text),
                 (std::to_string(branch.number) + "  " + branch.name).c_str());
   draw->PopClipRect();
   if (!present) return;
   const float x = std::round(scale.at(line.time));
-  draw->AddRectFilled({x - 1, top - 1}, {x + 1, bottom + 1}, theme::kMotion);
+  draw->AddRectFilled({x - 1, top - 1}, {x + 1, bottom + 1}, theme::motion());
   const float wide = 0.3F * text;
-  draw->AddTriangleFilled({x - wide, top - 1}, {x + wide, top - 1}, {x, top + wide}, theme::kMotion);
+  draw->AddTriangleFilled({x - wide, top - 1}, {x + wide, top - 1}, {x, top + wide}, theme::motion());
 }
 
 /// Goes to the time under the mouse while it is pressed there.

@@ -102,7 +102,9 @@ void section(const char* title, bool open, ImFont* bold, PanelModel& model, cons
   if (!shown) return;
   // Widgets of two panels may have one name.
   ImGui::PushID(title);
+  markPanel(title, true);
   panel(model);
+  markPanel(title, false);
   ImGui::PopID();
 }
 
@@ -112,6 +114,7 @@ struct Ui::State {
   ImGuiContext* context = ImGui::CreateContext();
   Fonts fonts;
   float pixels = kFontPixels;
+  Theme theme = Theme::dark;
   Clipboard clipboard;
   std::string pasted;  ///< ImGui keeps a pointer to it
 
@@ -124,7 +127,7 @@ struct Ui::State {
 Ui::Ui(double scale, Clipboard clipboard) : state_(std::make_unique<State>()) {
   state_->pixels = std::floor(kFontPixels * static_cast<float>(scale) + 0.25F);
   state_->fonts = loadFonts(state_->pixels);
-  applyTheme(state_->pixels);
+  applyTheme(state_->pixels, state_->theme);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   prepareInput(io);
@@ -161,6 +164,13 @@ void Ui::timeLine(PanelModel& model, const Rect& area) const {
                 {static_cast<float>(area.width), ImGui::GetIO().DisplaySize.y - top});
 }
 
+void Ui::setTheme(Theme theme) {
+  if (theme == state_->theme) return;
+  ImGui::SetCurrentContext(state_->context);
+  state_->theme = theme;
+  applyTheme(state_->pixels, theme);
+}
+
 void Ui::begin(int width, int height, const InputState& input) {
   ImGui::SetCurrentContext(state_->context);
   ImGui_ImplOpenGL3_NewFrame();
@@ -176,7 +186,15 @@ void Ui::panels(PanelModel& model, int height) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize({static_cast<float>(scene.x), static_cast<float>(height)});
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration & ~ImGuiWindowFlags_NoScrollbar;
-  ImGui::Begin("Panels", nullptr, kFixed | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  // Where the window is too narrow for them, panels are pushed aside and not cut off.
+  const float wanted = std::floor(kPanelWidth * state_->pixels);
+  const bool narrow = static_cast<float>(scene.x) < wanted;
+  if (narrow)
+    ImGui::SetNextWindowContentSize(
+        {wanted - 2 * ImGui::GetStyle().WindowPadding.x - ImGui::GetStyle().ScrollbarSize, 0});
+  ImGui::Begin("Panels", nullptr,
+               kFixed | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   (narrow ? ImGuiWindowFlags_HorizontalScrollbar : 0));
   const float lines = static_cast<float>(height) / state_->pixels;
   ImFont* bold = state_->fonts.bold;
   if (model.editor != nullptr) section("Scene", true, bold, model, scenePanel);
@@ -192,6 +210,7 @@ void Ui::panels(PanelModel& model, int height) {
   if (model.selection != nullptr) section("Particles", lines > 72, bold, model, selectionPanel);
   section("Changes", lines > 56, bold, model, changesPanel);
   section("Energy", lines > 58, bold, model, energyPanel);
+  if (!model.run.line.branches.empty()) section("Plots", lines > 88, bold, model, plotsPanel);
   if (!model.frame.gauges.empty()) section("Gauges", true, bold, model, gaugesPanel);
   section("Performance", lines > 46, bold, model, performancePanel);
   if (model.whatIf != nullptr) section("What if", lines > 60, bold, model, whatIfPanel);
@@ -286,7 +305,7 @@ Fonts loadFonts(float pixels) {
           load("DejaVuSansMono.ttf", pixels)};
 }
 
-void applyTheme(float pixels) {
+void applyTheme(float pixels, Theme theme) {
   const auto part = [pixels](float share) { return std::round(share * pixels); };
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
@@ -330,6 +349,40 @@ void applyTheme(float pixels) {
   set(ImGuiCol_HeaderActive, 0.235F, 0.285F, 0.350F);
   set(ImGuiCol_Separator, 1, 1, 1, 0.10F);
   set(ImGuiCol_NavHighlight, 0.33F, 0.82F, 0.76F);
+  set(ImGuiCol_PlotLinesHovered, 1, 0.561F, 0.451F);
+  set(ImGuiCol_PlotLines, 0.278F, 0.722F, 0.675F);
+  set(ImGuiCol_PlotHistogram, 0.914F, 0.769F, 0.416F);
+  set(ImGuiCol_TableRowBgAlt, 0.067F, 0.086F, 0.114F);
+  set(ImGuiCol_TableBorderLight, 1, 1, 1, 0.11F);
+  if (theme == Theme::dark) return;
+  set(ImGuiCol_Text, 0.10F, 0.13F, 0.17F);
+  set(ImGuiCol_TextDisabled, 0.36F, 0.41F, 0.47F);
+  set(ImGuiCol_WindowBg, 0.945F, 0.952F, 0.960F);
+  set(ImGuiCol_PopupBg, 0.985F, 0.988F, 0.992F, 0.98F);
+  set(ImGuiCol_Border, 0, 0, 0, 0.18F);
+  set(ImGuiCol_FrameBg, 0.855F, 0.875F, 0.895F);
+  set(ImGuiCol_FrameBgHovered, 0.800F, 0.830F, 0.860F);
+  set(ImGuiCol_FrameBgActive, 0.745F, 0.785F, 0.825F);
+  set(ImGuiCol_ScrollbarBg, 0, 0, 0, 0.06F);
+  set(ImGuiCol_ScrollbarGrab, 0, 0, 0, 0.22F);
+  set(ImGuiCol_ScrollbarGrabHovered, 0, 0, 0, 0.32F);
+  set(ImGuiCol_ScrollbarGrabActive, 0, 0, 0, 0.42F);
+  set(ImGuiCol_CheckMark, 0.02F, 0.47F, 0.43F);
+  set(ImGuiCol_SliderGrab, 0.20F, 0.62F, 0.59F, 0.65F);
+  set(ImGuiCol_SliderGrabActive, 0.10F, 0.52F, 0.49F, 0.75F);
+  set(ImGuiCol_Button, 0.690F, 0.850F, 0.845F);
+  set(ImGuiCol_ButtonHovered, 0.600F, 0.795F, 0.790F);
+  set(ImGuiCol_ButtonActive, 0.510F, 0.735F, 0.730F);
+  set(ImGuiCol_Header, 0.835F, 0.862F, 0.890F);
+  set(ImGuiCol_HeaderHovered, 0.775F, 0.815F, 0.855F);
+  set(ImGuiCol_HeaderActive, 0.720F, 0.770F, 0.820F);
+  set(ImGuiCol_Separator, 0, 0, 0, 0.15F);
+  set(ImGuiCol_NavHighlight, 0.02F, 0.47F, 0.43F);
+  set(ImGuiCol_PlotLinesHovered, 0.70F, 0.19F, 0.06F);
+  set(ImGuiCol_PlotLines, 0, 0.47F, 0.43F);
+  set(ImGuiCol_PlotHistogram, 0.60F, 0.38F, 0);
+  set(ImGuiCol_TableRowBgAlt, 1, 1, 1);
+  set(ImGuiCol_TableBorderLight, 0, 0, 0, 0.12F);
 }
 
 }  // namespace migiwa

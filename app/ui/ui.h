@@ -43,6 +43,8 @@ class Ui {
   Rect sceneArea(int width, int height, bool panels, std::size_t branches = 0) const;
 
   void begin(int width, int height, const InputState& input);
+  /// From the next frame on.
+  void setTheme(Theme theme);
   void panels(PanelModel& model, int height);
   /// Under the scene, `area`, which left room for it.
   void timeLine(PanelModel& model, const Rect& area) const;

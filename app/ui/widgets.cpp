@@ -20,6 +20,16 @@ std::string titleOf(std::string_view key) {
 
 namespace {
 
+std::vector<PanelPlace>& panelsOfFrame() {
+  static std::vector<PanelPlace> panels;
+  return panels;
+}
+
+std::string& panelOfRows() {
+  static std::string title;
+  return title;
+}
+
 std::vector<RowPlace>& rowsOfFrame() {
   static std::vector<RowPlace> rows;
   return rows;
@@ -34,14 +44,28 @@ void rowLabel(const char* label) {
   ImGui::SetNextItemWidth(-1);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   rowsOfFrame().push_back(
-      {label, corner.x, corner.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
+      {label, panelOfRows(), corner.x, corner.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
 }
 
 std::span<const RowPlace> rowPlaces() {
   return rowsOfFrame();
 }
 
+void markPanel(const char* title, bool open) {
+  panelOfRows() = open ? title : "";
+  const float at = ImGui::GetCursorScreenPos().y;
+  if (open)
+    panelsOfFrame().push_back({title, at, at});
+  else
+    panelsOfFrame().back().bottom = at;
+}
+
+std::span<const PanelPlace> panelPlaces() {
+  return panelsOfFrame();
+}
+
 void forgetRows() {
+  panelsOfFrame().clear();
   rowsOfFrame().clear();
 }
 
@@ -72,6 +96,19 @@ void faintText(std::string_view text) {
   ImGui::PopStyleColor();
 }
 
+std::string fitted(std::string text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  const std::string ellipsis = "…";
+  const auto continues = [&] {
+    return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U;
+  };
+  while (!text.empty() && ImGui::CalcTextSize((text + ellipsis).c_str()).x > width) {
+    while (continues()) text.pop_back();
+    if (!text.empty()) text.pop_back();
+  }
+  return text + ellipsis;
+}
+
 float buttonWidth(int count) {
   const float gaps = static_cast<float>(count - 1) * ImGui::GetStyle().ItemSpacing.x;
   return (ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(count);
@@ -81,10 +118,12 @@ bool wallRows(BoundaryParameters& boundary) {
   rowLabel("Walls");
   auto handling = static_cast<int>(boundary.handling);
   bool changed = choice("##handling", handling, handlingNames());
+  keyHint("/boundary/handling");
   boundary.handling = static_cast<BoundaryHandling>(handling);
   ImGui::BeginDisabled(boundary.handling != BoundaryHandling::gamma);
   rowLabel("Method of γ");
   changed |= choice("##method", boundary.gammaMethod, steppedGammaMethodNames());
+  keyHint("/boundary/gamma/method");
   ImGui::EndDisabled();
   return changed;
 }
@@ -92,13 +131,16 @@ bool wallRows(BoundaryParameters& boundary) {
 bool maxIterationsRow(SolverParameters& solver) {
   rowLabel("Max iterations");
   const bool changed = ImGui::SliderInt("##max", &solver.maxIterations, 1, 100, "%d", kLogSlider);
+  keyHint("/solver/max_iterations");
   if (changed) solver.minIterations = std::min(solver.minIterations, solver.maxIterations);
   return changed;
 }
 
 bool toleranceRow(SolverParameters& solver) {
   rowLabel("Tolerance");
-  return logSlider("##tolerance", solver.tolerance, 0.0005, 0.2, "%.4f");
+  const bool changed = logSlider("##tolerance", solver.tolerance, 0.0005, 0.2, "%.4f");
+  keyHint("/solver/tolerance");
+  return changed;
 }
 
 namespace {

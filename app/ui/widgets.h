@@ -28,8 +28,17 @@ void rowLabel(const char* label);
 /// Where the right column of a row is (pixels), by its label.
 struct RowPlace {
   std::string label;
+  std::string panel;  ///< the title of its panel
   float x, y, width, height;
 };
+/// Where a panel that is open has its widgets (pixels), by its title.
+struct PanelPlace {
+  std::string title;
+  float top, bottom;
+};
+/// Rows from now on are in that panel; `open` false: no longer.
+void markPanel(const char* title, bool open);
+std::span<const PanelPlace> panelPlaces();
 /// Of the last frame, in the order in which they are drawn.
 std::span<const RowPlace> rowPlaces();
 /// A frame begins.
@@ -39,8 +48,13 @@ bool choice(const char* id, int& index, std::span<const std::string_view> names)
 /// What sliders of numbers have that span powers of ten.
 constexpr ImGuiSliderFlags kLogSlider = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic;
 bool logSlider(const char* id, double& value, double low, double high, const char* format);
+/// While the mouse is over the last widget: what the scene's key of that JSON pointer means, its range and
+/// what a change costs.
+void keyHint(std::string_view pointer);
 /// Text in the panels' fainter colour.
 void faintText(std::string_view text);
+/// The text as far as it fits into the width (pixels), with an ellipsis for what does not.
+std::string fitted(std::string text, float width);
 /// `count` buttons side by side: the width of each.
 float buttonWidth(int count);
 
@@ -73,6 +87,8 @@ void performancePanel(PanelModel& model);
 /// Energies over the run, against what was given.
 void energyPanel(PanelModel& model);
 void gaugesPanel(PanelModel& model);
+/// Measures over the run, with its branches and what "What if" has tried.
+void plotsPanel(PanelModel& model);
 
 // The time line under the scene: a row for each branch, with the states that are kept, on which one goes
 // back.
@@ -177,15 +193,29 @@ inline constexpr ImU32 kInk = IM_COL32(24, 34, 46, 255);        ///< text on the
 inline constexpr ImU32 kFaintInk = IM_COL32(82, 97, 114, 255);  ///< its labels
 inline constexpr ImU32 kPaper = IM_COL32(250, 251, 252, 205);   ///< behind it
 inline constexpr ImU32 kPaperEdge = IM_COL32(60, 75, 95, 60);
-inline constexpr ImU32 kAlert = IM_COL32(255, 143, 115, 255);
-inline constexpr ImU32 kAccent = IM_COL32(71, 184, 172, 255);
-inline constexpr ImU32 kMotion = IM_COL32(233, 196, 106, 255);  ///< curves of what moves
-inline constexpr ImU32 kWell = IM_COL32(17, 22, 29, 255);       ///< behind plots and bars
-inline constexpr ImU32 kGridLine = IM_COL32(255, 255, 255, 28);
+// Of panels, by the theme of the current ImGui context, in whose style they are kept where ImGui has no use
+// for them.
+inline ImU32 alert() {
+  return ImGui::GetColorU32(ImGuiCol_PlotLinesHovered);
+}
+inline ImU32 accent() {
+  return ImGui::GetColorU32(ImGuiCol_PlotLines);
+}
+/// Curves of what moves.
+inline ImU32 motion() {
+  return ImGui::GetColorU32(ImGuiCol_PlotHistogram);
+}
+/// Behind plots and bars.
+inline ImU32 well() {
+  return ImGui::GetColorU32(ImGuiCol_TableRowBgAlt);
+}
+inline ImU32 gridLine() {
+  return ImGui::GetColorU32(ImGuiCol_TableBorderLight);
+}
 }  // namespace theme
 
 /// Sets the current ImGui context's style for text of `pixels` height.
-void applyTheme(float pixels);
+void applyTheme(float pixels, Theme theme);
 
 /// Draws the editor's window over `area`, if it is open.
 void sceneEditorWindow(SceneEditor& editor, const Rect& area, const Fonts& fonts);

@@ -73,6 +73,10 @@ SceneWindow::~SceneWindow() {
   if (saving_.valid()) saving_.wait();
 }
 
+void SceneWindow::keepAll() {
+  if (saving_.valid()) saving_.get();
+}
+
 SceneWindow::News SceneWindow::poll() {
   bool panels = false, picture = false;
   const auto now = std::chrono::steady_clock::now();
@@ -101,16 +105,20 @@ SceneWindow::News SceneWindow::poll() {
     selection_.note = listing_.get();
     panels = true;
   }
-  picture |= simulation_->takeFrame(frame_);
+  if (simulation_->takeFrame(frame_)) {
+    ++frames_;
+    picture = true;
+  }
   picture |= sections_.poll(section_, viewer_.view().section, simulation_->scene(), viewer_.settings(),
                             frame_.view());
   return panels ? News::panels : picture ? News::frame : News::none;
 }
 
-void SceneWindow::draw(const InputState& input, int width, int height) {
+void SceneWindow::draw(const InputState& input, int width, int height, const Haste& haste) {
   run_ = simulation_->status();
   width_ = width, height_ = height;
-  commands_ = viewer_.frame(frame_.view(), run_, input, width, height);
+  if (!haste.keeps) drawn_ = frames_;
+  commands_ = viewer_.frame(frame_.view(), run_, input, width, height, {haste.share, drawn_});
 }
 
 void SceneWindow::carryOut() {

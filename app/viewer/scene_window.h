@@ -35,8 +35,15 @@ class SceneWindow {
   enum class News { none, frame, panels };
   /// Takes in what has been done in the background: whether the picture is another, or the panels are, too.
   News poll();
+  /// How a frame is drawn that is to be there soon.
+  struct Haste {
+    double share = 1;  ///< as of a SceneDrawing
+    bool keeps =
+        false;  ///< a scene that was drawn from the frame before serves, but for another camera or view
+  };
   /// Draws a frame.
-  void draw(const InputState& input, int width, int height);
+  void draw(const InputState& input, int width, int height, const Haste& haste);
+  void draw(const InputState& input, int width, int height) { draw(input, width, height, Haste{}); }
   /// Does what was asked for in it.
   void carryOut();
 
@@ -48,6 +55,8 @@ class SceneWindow {
   /// As of the last frame.
   const RunStatus& run() const { return run_; }
   FrameView frame() const { return frame_.view(); }
+  /// Waits for what is being kept, and throws where it could not be.
+  void keepAll();
   /// A section or a table is still being made.
   bool busy() const { return sections_.busy() || listing_.valid(); }
   /// What is being done about a change of the scene that takes long.
@@ -73,6 +82,7 @@ class SceneWindow {
   SelectionModel selection_;
   Viewer viewer_;
   FrameSnapshot frame_;
+  long frames_ = 0, drawn_ = 0;  ///< numbers of the one that was taken last, and of the one that is seen
   RunStatus run_;
   int width_ = 1, height_ = 1;  ///< of it (pixels)
   UiCommands commands_;

@@ -80,6 +80,7 @@ bool Viewer::replaceScene(const Scene& scene, std::optional<WallDrawing> walls, 
     bounds_ = scene.bounds();
     referenceSpeed_ = referenceSpeed(scene);
     renderer_ = Renderer(surroundings(scene, *std::move(walls)), options_.colors);
+    drawn_.reset();
   }
   if (viewChanged) takeView();
   const bool restores = afterwards_.has_value();
@@ -105,11 +106,15 @@ void Viewer::answerText(int request) {
 }
 
 UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
-                         int height) {
-  if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
+                         int height, const SceneDrawing& drawing) {
+  if (!target_ || target_->width() != width || target_->height() != height) {
+    target_.emplace(width, height);
+    drawn_.reset();
+  }
   area_ = ui_.sceneArea(width, height, view_.panels, run.line.branches.size());
   const Rect area = area_;
 
+  followView();
   // The first frame's panels know their own size only once they have been laid out.
   if (!laidOut_) {
     for (int i = 0; i < 2; ++i) {
@@ -141,11 +146,47 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   if (afterwards_) afterwards_ = undoable();
   last_ = input;
 
-  target_->beginScene();
-  renderer_.draw(asShown(frame), shot(area), *target_);
-  target_->beginOverlay();
+  drawScene(asShown(frame), area, drawing);
   ui_.end(true);
   return commands;
+}
+
+/// Leaves the target bound for what is drawn over it.
+void Viewer::drawScene(const FrameView& frame, const Rect& area, const SceneDrawing& drawing) {
+  Drawn now{drawing.frame, shot(area), frame.water, drawing.share};
+  const bool same = drawn_ && now.frame && now.frame == drawn_->frame && now.shot == drawn_->shot &&
+                    (now.water == nullptr) == (drawn_->water == nullptr) && drawn_->share >= now.share;
+  drewScene_ = !same;
+  if (!same) {
+    drawn_ = std::move(now);
+    Shot small = drawn_->shot;
+    const auto part = [&](int pixels) { return static_cast<int>(std::lround(drawing.share * pixels)); };
+    if (drawing.share < 1) {
+      const int width = std::max(part(target_->width()), 1), height = std::max(part(target_->height()), 1);
+      if (!reduced_ || reduced_->width() != width || reduced_->height() != height)
+        reduced_.emplace(width, height);
+      const int x = std::min(part(area.x), width - 1), y = std::min(part(area.y), height - 1);
+      small.scene = {x, y, std::clamp(part(area.width), 1, width - x),
+                     std::clamp(part(area.height), 1, height - y)};
+    }
+    sceneTarget().beginScene();
+    renderer_.draw(frame, small, sceneTarget());
+  }
+  if (&sceneTarget() == &*target_)
+    target_->beginOverlay();
+  else
+    target_->beginOverlay(*reduced_);
+}
+
+/// Theme and colours, of which others than the view's may be in force.
+void Viewer::followView() {
+  ui_.setTheme(view_.theme);
+  if (view_.scale == scale_) return;
+  scale_ = view_.scale;
+  options_.colors = scale_ == ColorScale::warm ? makeWarmColorMap() : makeColorMap();
+  renderer_.setColors(options_.colors);
+  drawn_.reset();
+  sheetRaster_.reset();
 }
 
 Shot Viewer::shot(const Rect& area) const {
@@ -316,7 +357,12 @@ void Viewer::restore(const Undoable& state, UiCommands& commands) {
 }
 
 std::optional<Vec3d> Viewer::pointAt(int x, int y, const Rect& area) const {
-  const std::optional<float> depth = target_->depthAt(x, y);
+  const RenderTarget& drawn = sceneTarget();
+  const auto place = [](int pixel, int of, int in) {
+    return std::clamp(static_cast<int>((pixel + 0.5) * in / of), 0, in - 1);
+  };
+  const std::optional<float> depth =
+      drawn.depthAt(place(x, target_->width(), drawn.width()), place(y, target_->height(), drawn.height()));
   if (!depth) return std::nullopt;
   const Projection projection = makeProjection(view_.camera, target_->width(), target_->height(), area);
   const Eigen::Vector4d onScreen(2 * (x + 0.5 - area.x) / area.width - 1,

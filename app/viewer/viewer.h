@@ -48,6 +48,12 @@ struct ViewerOptions {
   Clipboard clipboard{};  ///< as of Ui
 };
 
+/// How the scene of one frame is drawn.
+struct SceneDrawing {
+  double share = 1;             ///< of its width and height, in (0, 1]; enlarged where it is less
+  std::optional<long> frame{};  ///< the same number is the same frame view; nothing: it may be any
+};
+
 /// The scale that suits a picture of this size.
 double scaleFor(int width, int height);
 
@@ -64,8 +70,13 @@ class Viewer {
   void answerText(int request);
 
   /// Draws one frame and returns what the user asked for.
+  /// What has not changed is not drawn anew, and stays as fine as it is.
   UiCommands frame(const FrameView& frame, const RunStatus& run, const InputState& input, int width,
-                   int height);
+                   int height, const SceneDrawing& drawing = {});
+  /// Of width and height, that the scene of the last frame was drawn at.
+  double sceneShare() const { return drawn_ ? drawn_->share : 1; }
+  /// Whether it was drawn anew.
+  bool drewScene() const { return drewScene_; }
   /// The picture of the last frame.
   Image picture() const { return target_->read(); }
   /// Draws a frame that is not shown and takes no input; it depends on no earlier one.
@@ -99,6 +110,10 @@ class Viewer {
   /// With the water's surface only where it is to be seen.
   FrameView asShown(const FrameView& frame) const;
   Shot shot(const Rect& area) const;
+  void followView();
+  void drawScene(const FrameView& frame, const Rect& area, const SceneDrawing& drawing);
+  /// That the scene was drawn into.
+  const RenderTarget& sceneTarget() const { return reduced_ && sceneShare() < 1 ? *reduced_ : *target_; }
   void inspect(const FrameView& frame, const InputState& input, const Rect& area);
   bool hidden(const FrameView& frame, std::size_t particle, const InputState& input, const Rect& area) const;
   void lookInto(const FrameView& frame);
@@ -126,6 +141,7 @@ class Viewer {
   double referenceSpeed_;
   Settings settings_;
   ViewState view_;
+  ColorScale scale_ = ColorScale::cool;  ///< that options_.colors are of
   Renderer renderer_;
   Ui ui_;
   StageHistory history_;
@@ -133,7 +149,16 @@ class Viewer {
   bool awaitsText_ = false;             ///< the text that was last asked for is being read
   std::optional<Undoable> afterwards_;  ///< what is to be in force with it, where it was taken back to
   std::vector<GlTexture> galleryPictures_;
-  std::optional<RenderTarget> target_;
+  std::optional<RenderTarget> target_, reduced_;
+  /// What the scene was last drawn from.
+  struct Drawn {
+    std::optional<long> frame;
+    Shot shot;
+    std::shared_ptr<const SurfaceMesh> water;
+    double share;
+  };
+  std::optional<Drawn> drawn_;  ///< nothing: it is to be drawn anew
+  bool drewScene_ = false;
   /// What the section is drawn as, and what it was made of.
   std::shared_ptr<const Sheet> sheet_;
   std::shared_ptr<const SectionRaster> sheetRaster_;
@@ -157,6 +182,28 @@ bool contains(const Rect& area, const InputState& input);
 /// sphere that the ray of sight meets, of those that the shot does not cut away. Its index in the frame.
 std::optional<std::size_t> pickParticle(const FrameView& frame, const Shot& shot, int width, int height,
                                         double x, double y);
+
+// How finely the scene is drawn while things move, so that the window answers quickly where drawing is slow.
+
+/// While something moves, the scene is drawn at a share of its size at which a frame takes `kBudget` at most;
+/// whole once all is at rest. Where drawing is quick it is always whole.
+class SceneDetail {
+ public:
+  static constexpr double kBudget = 0.018;  // (s)
+
+  /// Of width and height, for the next frame.
+  double share(bool moving) const { return moving ? kShares[level_] : 1; }
+  /// A frame in which the scene was drawn at the share of that moment took so long (s).
+  void drawn(bool moving, double seconds);
+
+ private:
+  static constexpr std::array<double, 4> kShares{1, 0.71, 0.5, 0.36};  ///< below that panels are most of it
+  static constexpr int kSettled = 4;  ///< frames after which a mean tells something
+
+  std::size_t level_ = 0;
+  double mean_ = 0;  ///< of frames at this level (s)
+  int frames_ = 0;
+};
 
 // What a window shows while its scene is being prepared.
 

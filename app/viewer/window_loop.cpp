@@ -21,6 +21,14 @@ namespace {
 constexpr int kWidth = 1280, kHeight = 720;
 /// No screen shows more; without a screen's own limit the simulation would lose its processor to drawing.
 constexpr double kShortestFrame = 1.0 / 60;
+/// So long after the last input the scene is whole again.
+constexpr std::chrono::milliseconds kAtRest(250);
+/// So long after a frame of the run was drawn an input is answered over it, before the next one is.
+constexpr std::chrono::milliseconds kStillGood(120);
+/// Of the time, that drawing may take while a run plays and nothing is touched; the rest is the run's.
+constexpr double kDrawingShare = 0.4;
+/// So often it is looked whether there is something to be drawn, while nothing plays.
+constexpr double kBetweenLooksAtRest = 0.04;  // (s)
 /// Panels answer to an input over a few frames.
 constexpr int kFramesAfterInput = 3;
 
@@ -40,6 +48,7 @@ class Preparation {
       : name_(std::move(name)), status_(std::make_shared<PreparationStatus>()) {
     prepared_ = std::async(std::launch::async, [status = status_, read = std::move(read),
                                                 threads = options.threads, past = options.past] {
+      letOthersGoFirst();
       const ProgressScope watched(*status);
       Scene scene = read();
       auto simulation = std::make_unique<SimulationThread>(scene, threads, Pace::realTime, past);
@@ -127,11 +136,19 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
 
   int redraws = kFramesAfterInput;
   long drawn = 0;
+  SceneDetail detail;
+  Clock::time_point touched = Clock::now(), sceneDrawn = touched - kStillGood;
+  double between = kShortestFrame;  // (s), as long as nothing is touched
   Clock::time_point last = Clock::now();
   while (!window.shouldClose() && (!options.frames || drawn < *options.frames)) {
     const double since = std::chrono::duration<double>(Clock::now() - last).count();
-    const InputState input = window.waitForInput(std::max(kShortestFrame - since, 0.0));
-    if (window.somethingHappened()) redraws = kFramesAfterInput;
+    const InputState input =
+        window.waitForInput(std::max((redraws > 0 ? kShortestFrame : between) - since, 0.0));
+    const bool answering = window.somethingHappened();
+    if (answering) {
+      redraws = kFramesAfterInput;
+      touched = Clock::now();
+    }
     if (std::string now = content.preparing(); now != preparing) {
       preparing = std::move(now);
       window.setTitle(preparing.empty() ? title : std::string(preparing).append(" - ").append(title));
@@ -145,14 +162,27 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
     redraws = std::max(redraws, news == SceneWindow::News::panels  ? kFramesAfterInput
                                 : news == SceneWindow::News::frame ? 1
                                                                    : 0);
+    const bool moving = content.run().playing || Clock::now() - touched < kAtRest;
+    if (!moving && content.viewer().sceneShare() < 1) redraws = std::max(redraws, 1);
     const auto [width, height] = window.framebufferSize();
     last = Clock::now();
+    if (!content.run().playing) between = kBetweenLooksAtRest;
     if ((redraws == 0 && !options.frames) || width == 0 || height == 0) continue;
 
-    content.draw(input, width, height);
+    // What was just drawn serves once more: an input is answered before the next frame of the run is drawn.
+    const bool first = answering && last - sceneDrawn < kStillGood;
+    content.draw(input, width, height, {detail.share(moving), first});
     content.viewer().copyToWindow();
+    window.finish();
+    if (content.viewer().drewScene()) {
+      sceneDrawn = Clock::now();
+      detail.drawn(moving, std::chrono::duration<double>(sceneDrawn - last).count());
+    }
     window.swap();
     content.carryOut();
+    if (content.run().playing)
+      between = std::max(kShortestFrame,
+                         std::chrono::duration<double>(Clock::now() - last).count() / kDrawingShare);
     redraws = std::max(redraws - 1, 0);
     ++drawn;
   }
@@ -179,6 +209,25 @@ std::optional<Prepared> awaited(Preparation& preparing, GlfwWindow& window) {
 }
 
 }  // namespace
+
+void SceneDetail::drawn(bool moving, double seconds) {
+  if (!moving) return;
+  constexpr double kNew = 0.25;
+  // The next finer level has twice the pixels; a frame has more to do than them, so that it does not come
+  // back.
+  constexpr double kFiner = 0.35;
+  mean_ = frames_ == 0 ? seconds : (1 - kNew) * mean_ + kNew * seconds;
+  ++frames_;
+  const bool coarser = frames_ >= kSettled ? mean_ > kBudget : frames_ > 1 && mean_ > 2 * kBudget;
+  const bool finer = frames_ >= 4 * kSettled && mean_ < kFiner * kBudget;
+  if (coarser && level_ + 1 < kShares.size())
+    ++level_;
+  else if (finer && level_ > 0)
+    --level_;
+  else
+    return;
+  mean_ = 0, frames_ = 0;
+}
 
 void runWindow(const std::string& name, const std::function<Scene()>& read, const WindowOptions& options) {
   Preparation preparing(name, read, options);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,8 +52,9 @@ std::optional<Json::json_pointer> parsePointer(std::string_view text);
 /// From the outermost one on, without escapes.
 std::vector<std::string> tokensOf(Json::json_pointer pointer);
 
-/// The byte at which a value begins in a text that is JSON, or its key, or as much of the way as there is.
-std::size_t offsetOf(std::string_view text, const Json::json_pointer& pointer);
+/// The bytes at which values begin in a text that is JSON, or their keys, or as much of the way as there is;
+/// pointers are escaped, and that of the whole is empty.
+std::vector<std::size_t> offsetsOf(std::string_view text, std::span<const std::string> pointers);
 
 /// What a value is, for "found ...": numbers and short texts themselves, else the kind with its size.
 std::string describeJson(const Json& value);

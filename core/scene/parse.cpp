@@ -387,35 +387,62 @@ JsonDocument parseJson(std::string_view text) {
   return document;
 }
 
-std::size_t offsetOf(std::string_view text, const Json::json_pointer& pointer) {
+namespace {
+
+/// Calls `visit` with the pointer of each value of a text that is JSON, and the byte at which it begins, or
+/// its key.
+template <class Visit>
+void eachValue(std::string_view text, const Visit& visit) {
+  struct Level {
+    std::string pointer;
+    bool object;
+    std::size_t index = 0;
+  };
+  std::vector<Level> levels;
   Token token = firstToken(text);
-  std::size_t found = token.begin;
   const auto next = [&] { token = tokenFrom(text, token.end); };
-  for (const std::string& wanted : tokensOf(pointer)) {
-    const bool object = signOf(text, token) == '{';
-    if (!object && signOf(text, token) != '[') return found;
-    next();
-    for (std::size_t index = 0;; ++index) {
-      if (isOneOf(signOf(text, token), std::string_view("}]\0", 3))) return found;
-      const std::size_t entry = token.begin;
-      Json name = std::to_string(index);
-      if (object) {
-        name = Json::parse(token.of(text), nullptr, false);
-        next();  // the colon
-        next();
-      }
-      if (name == wanted) {
-        found = entry;
-        break;
-      }
-      int open = 0;
-      do {
-        if (isOneOf(signOf(text, token), "{[")) ++open;
-        if (isOneOf(signOf(text, token), "}]")) --open;
-        next();
-      } while (open > 0 && token.begin < text.size());
-      if (signOf(text, token) == ',') next();
+  for (; token.begin < text.size(); next()) {
+    const char sign = signOf(text, token);
+    if (isOneOf(sign, "}]")) {
+      if (levels.empty()) return;
+      levels.pop_back();
+      continue;
     }
+    if (sign == ',') {
+      if (!levels.empty()) ++levels.back().index;
+      continue;
+    }
+    std::string pointer;
+    const std::size_t begin = token.begin;
+    if (!levels.empty() && !levels.back().object) {
+      pointer = childPointer(levels.back().pointer, levels.back().index);
+    } else if (!levels.empty()) {
+      const Json key = Json::parse(token.of(text), nullptr, false);
+      pointer = childPointer(levels.back().pointer, key.is_string() ? key.get<std::string>() : "");
+      next();  // the colon
+      next();
+    }
+    visit(pointer, begin);
+    const char value = signOf(text, token);
+    if (isOneOf(value, "{[")) levels.push_back({std::move(pointer), value == '{'});
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> offsetsOf(std::string_view text, std::span<const std::string> pointers) {
+  const auto above = [](const std::string& pointer) { return pointer.substr(0, pointer.rfind('/')); };
+  std::unordered_map<std::string, std::size_t> offsets{{"", firstToken(text).begin}};
+  for (std::string pointer : pointers)
+    for (; !pointer.empty(); pointer = above(pointer)) offsets.emplace(pointer, std::string::npos);
+  eachValue(text, [&](const std::string& pointer, std::size_t offset) {
+    const auto wanted = offsets.find(pointer);
+    if (wanted != offsets.end() && wanted->second == std::string::npos) wanted->second = offset;
+  });
+  std::vector<std::size_t> found;
+  for (std::string pointer : pointers) {
+    while (offsets.at(pointer) == std::string::npos) pointer = above(pointer);
+    found.push_back(offsets.at(pointer));
   }
   return found;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,9 +58,10 @@ Scene parseScene(std::string_view text, const std::filesystem::path& name,
 // A scene file as a text that a person edits: where in it a fault is, and how what has changed since is
 // written into it.
 
-/// The line, from 1, of a fault in the text of `file`; 0 when it lies elsewhere: in a file that is included,
-/// or in an option.
-int lineOfFault(const Fault& fault, std::string_view text, const std::filesystem::path& file);
+/// The lines, from 1, of faults in the text of `file`; 0 for one that lies elsewhere: in a file that is
+/// included, or in an option.
+std::vector<int> linesOfFaults(std::span<const Fault> faults, std::string_view text,
+                               const std::filesystem::path& file);
 
 /// The text of a scene file that reads back as `scene`: `text` with as little changed as that takes. `scene`
 /// must be one that no other thread uses, read from `text`, perhaps with options, and changed in its settings

@@ -147,19 +147,31 @@ std::vector<std::filesystem::path> filesNamedBy(const Scene& scene) {
   return files;
 }
 
-int lineOfFault(const Fault& fault, std::string_view text, const std::filesystem::path& file) {
+std::vector<int> linesOfFaults(std::span<const Fault> faults, std::string_view text,
+                               const std::filesystem::path& file) {
   const std::string prefix = file.string() + ":";
-  if (!fault.place.starts_with(prefix)) return 0;
-  const std::string_view place = std::string_view(fault.place).substr(prefix.size());
-  if (!place.starts_with('/')) {
-    int line = 0;
-    std::from_chars(place.data(), place.data() + place.size(), line);
-    return line;
+  std::vector<int> lines(faults.size(), 0);
+  std::vector<std::string> pointers;
+  std::vector<std::size_t> owners;
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    if (!faults[k].place.starts_with(prefix)) continue;
+    const std::string place = faults[k].place.substr(prefix.size());
+    if (place.starts_with('/')) {
+      pointers.push_back(place == "/" || !parsePointer(place) ? "" : place);
+      owners.push_back(k);
+    } else {
+      std::from_chars(place.data(), place.data() + place.size(), lines[k]);
+    }
   }
-  const Json::json_pointer pointer =
-      place == "/" ? Json::json_pointer() : parsePointer(place).value_or(Json::json_pointer());
-  const std::string_view before = text.substr(0, offsetOf(text, pointer));
-  return 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+  if (pointers.empty()) return lines;
+  std::vector<std::size_t> ends;
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+    ends.push_back(at);
+  const std::vector<std::size_t> offsets = offsetsOf(text, pointers);
+  for (std::size_t k = 0; k < offsets.size(); ++k)
+    lines[owners[k]] =
+        1 + static_cast<int>(std::lower_bound(ends.begin(), ends.end(), offsets[k]) - ends.begin());
+  return lines;
 }
 
 std::string sceneTextWith(std::string_view text, const std::filesystem::path& file, const Scene& scene) {

@@ -159,7 +159,8 @@ void repeatRun(const StudyPlan& plan, std::size_t run, int threads,
 
 WhatIf::WhatIf(const Scene& scene, int threads) : copy_(scene, threads) {}
 
-WhatIfAnswer WhatIf::ask(const StateImage& state, const Settings& settings) {
+WhatIfAnswer WhatIf::ask(const StateImage& state, const Settings& settings, int frames,
+                         const std::function<void(const Simulation&)>& eachFrame) {
   state.restore(copy_);
   copy_.apply(settings);
   WhatIfAnswer answer;
@@ -168,9 +169,10 @@ WhatIfAnswer WhatIf::ask(const StateImage& state, const Settings& settings) {
   const long stepsBefore = statistics.steps;
   const double iterationsBefore = statistics.iterationSum;
   std::size_t counted = statistics.stepSeconds.size();
-  for (int frame = 0; frame < kFrames && !copy_.stopped(); ++frame) {
+  for (int frame = 0; frame < frames && !copy_.stopped(); ++frame) {
     copy_.advanceFrame();
     if (frame == 0) counted = statistics.stepSeconds.size();
+    if (eachFrame) eachFrame(copy_);
   }
 
   std::vector<float> seconds(statistics.stepSeconds.begin() + static_cast<std::ptrdiff_t>(counted),

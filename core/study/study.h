@@ -258,7 +258,9 @@ class WhatIf {
   WhatIf(const Scene& scene, int threads);
 
   /// The scene that `state` was taken from must be this one.
-  WhatIfAnswer ask(const StateImage& state, const Settings& settings);
+  /// Goes on for so many frames, after each of which `eachFrame` is called.
+  WhatIfAnswer ask(const StateImage& state, const Settings& settings, int frames = kFrames,
+                   const std::function<void(const Simulation&)>& eachFrame = {});
 
  private:
   Simulation copy_;

@@ -188,6 +188,58 @@ TEST_F(Script, TellsManyFaultsWithTheirLines) {
   EXPECT_NE(fault.find("script.json:20003: event 20001"), std::string::npos) << fault;
 }
 
+TEST_F(Script, FindsAWidgetInItsPanel) {
+  const auto tolerances = [&](const std::string& in) {
+    EXPECT_EQ(run(R"([{"press": "Energy"}, {"press": "Changes"}, {"press": "View"}, {"press": "Performance"},
+                      {"wait": 0.1}, {"press": "Tolerance", "at": 0.9, "in": ")" +
+                      in + R"("}, {"wait": 0.1}, {"picture": "a.png"}])",
+                  in),
+              kDone)
+        << error_;
+    return picture(in + "/a.png");
+  };
+  EXPECT_GT(differentShare(tolerances("Solver"), tolerances("What if")), 0.0005);
+  EXPECT_NE(faultOf(R"([{"press": "Tolerance", "in": "Boundary"}])").find("in the panel \"Boundary\""),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(faultOf(R"([{"press": "Tolerance", "in": "Slover"}])").find("\"Solver\""), std::string::npos)
+      << error_;
+}
+
+TEST_F(Script, TellsWhatCouldNotBeKept) {
+  std::filesystem::create_directories(folder_ / "full" / "migiwa_0001.png");
+  EXPECT_NE(run(R"([{"key": "p"}])", "full"), kDone);
+  EXPECT_NE(error_.find("migiwa_0001.png"), std::string::npos) << error_;
+}
+
+TEST_F(Script, RefusesTimesOutOfReachAndTellsRepeatedKeysByLine) {
+  EXPECT_EQ(run(R"([{"play_to": 1e5}])", "far", {"--set", "/solver/time_step=1e-6"}), kBadInput);
+  EXPECT_NE(error_.find("script.json:1: event 1: expected at most 1000 s"), std::string::npos) << error_;
+  EXPECT_NE(faultOf("[{\"key\": \"h\"},\n{\"key\": \"h\",\n\"key\": \"p\"}]").find("script.json:2: /1/key"),
+            std::string::npos)
+      << error_;
+}
+
+TEST_F(Script, PlotsBranchesOverEachOtherAndKnowsTwoThemes) {
+  const std::string begin =
+      R"([{"press": "Solver"}, {"press": "Boundary"}, {"press": "Section"}, {"press": "Particles"},
+    {"press": "Energy"}, {"press": "Changes"}, {"press": "View"}, {"play_to": 0.08}, {"key": "home"}, {"wait": 0.1}, {"play_to": 0.02}, {"key": "c"}, {"wait": 0.1}, {"play_to": 0.06},
+    {"press": "Plots"}, {"wait": 0.3}, )";
+  ASSERT_EQ(
+      run(begin + R"({"move": [0.5, 0.5]}, {"picture": "a.png"}, {"choose": "Plot of", "entry": "height"},
+    {"move": [0.5, 0.5]}, {"wait": 0.3}, {"picture": "c.png"}, {"key": "z", "control": true}, {"wait": 0.3},
+    {"move": [0.5, 0.5]}, {"picture": "b.png"}])",
+          "plots"),
+      kDone)
+      << error_;
+  EXPECT_LT(differentShare(picture("plots/a.png"), picture("plots/b.png")), 0.0005) << "taken back";
+  EXPECT_GT(differentShare(picture("plots/a.png"), picture("plots/c.png")), 0.0005) << "another measure";
+  ASSERT_EQ(run(R"([{"choose": "Theme", "entry": "light"}, {"picture": "a.png"}])", "light"), kDone)
+      << error_;
+  const Image light = picture("light/a.png");
+  EXPECT_GT(light.pixel(4, 4)[0], 200) << "beside the first heading";
+}
+
 TEST_F(Script, StandsBesideTheWindowAlone) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"--set-at", "0.1:/solver/tolerance=0.1"},

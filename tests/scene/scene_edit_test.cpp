@@ -32,7 +32,7 @@ std::vector<int> linesOf(std::string_view text) {
   try {
     parseScene(text, "some/scene.json", {Override::parse("/solver/substeps=0")});
   } catch (const InputError& error) {
-    for (const Fault& fault : error.faults()) lines.push_back(lineOfFault(fault, text, "some/scene.json"));
+    lines = linesOfFaults(error.faults(), text, "some/scene.json");
   }
   return lines;
 }
@@ -49,8 +49,12 @@ TEST(SceneEdit, FaultsHaveLines) {
 
 TEST(SceneEdit, PointersAreFollowedThroughTheText) {
   const Fault fault{"s.json:/a~1b/1/c", ""};
-  EXPECT_EQ(lineOfFault(fault, "{\n\"a\": 1,\n\"a/b\": [ [\n], {\n\"x\": 1,\n\"c\": 2 } ] }", "s.json"), 6);
-  EXPECT_EQ(lineOfFault({"other.json:/a", ""}, "{}", "s.json"), 0);
+  EXPECT_EQ(
+      linesOfFaults({&fault, 1}, "{\n\"a\": 1,\n\"a/b\": [ [\n], {\n\"x\": 1,\n\"c\": 2 } ] }", "s.json")
+          .front(),
+      6);
+  const Fault elsewhere{"other.json:/a", ""};
+  EXPECT_EQ(linesOfFaults({&elsewhere, 1}, "{}", "s.json").front(), 0);
 }
 
 constexpr std::string_view kScene = R"({ "format": 1, "particle_spacing": 0.1, "gravity": [0, -9.81, 0],
