@@ -55,11 +55,12 @@ studyOfSolvers() {
     --until "$4" --threads 1 --repeat 3 --out "$1/${2##*/}"
 }
 
-# studiesOfSolvers DIR: dam break, still tank and standing wave.
+# studiesOfSolvers DIR: dam break, still tank, standing wave and bowl.
 studiesOfSolvers() {
   studyOfSolvers "$1" dam_break 0.08 2
   studyOfSolvers "$1" still_tank 0.08 2.5
   studyOfSolvers "$1" truth/standing_wave 0.04 4.6
+  studyOfSolvers "$1" bowl 0.08 2
 }
 
 # slimStudy DIR: degree and number of nodes of the bunny.
