@@ -174,7 +174,7 @@ std::unique_ptr<GammaMethod> makeBoundaryParticles(const GammaContext& context);
 std::unique_ptr<GammaMethod> makeWallWeight(const GammaContext& context);
 /// Kulasegaram, Bonet, Lewis, Profit 2004: gamma as a spline over the distance.
 std::unique_ptr<GammaMethod> makeSplineGamma(const GammaContext& context);
-/// Moore & Wilhelms 1988: no correction, and a force that grows with the depth in the wall.
+/// No correction, and a force that grows with the depth in the wall: core/solver/penalty.cpp.
 std::unique_ptr<GammaMethod> makePenalty(const GammaContext& context);
 
 // gamma on a plane cut through a scene, and how far it is from a fine reference: the paper's Figure 3.

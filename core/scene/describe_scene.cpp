@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/messages.h"
 #include "core/gamma/gamma_method.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_file.h"
@@ -200,6 +201,23 @@ void describeMethod(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
     visitor.warning("wcsph", "is not used by the method \"" + std::string(name) + "\"");
 }
 
+/// A scene that was written for PBF may ask other methods for less than what they stand for.
+template <class Visitor>
+void warnOfPbfsOwn(Visitor& visitor, const SolverParameters& solver) {
+  const bool iterates = solver.method == SolverMethod::pcisph || solver.method == SolverMethod::dfsph;
+  if (!iterates || !visitor.valid({"min_iterations", "tolerance"})) return;
+  SolverParameters own;
+  own.takeMethod(solver.method);
+  const auto warn = [&](std::string_view key, double found, double its) {
+    visitor.warning(key, formatNumber("%.6g", found) + " is that of the scene; " +
+                             std::string(kSolverMethodNames[static_cast<std::size_t>(solver.method)]) +
+                             "'s own is " + formatNumber("%.6g", its));
+  };
+  if (solver.minIterations < own.minIterations)
+    warn("min_iterations", solver.minIterations, own.minIterations);
+  if (solver.tolerance > own.tolerance) warn("tolerance", solver.tolerance, own.tolerance);
+}
+
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   describeMethod(visitor, solver);
@@ -233,6 +251,7 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                                         std::to_string(solver.minIterations));
   visitor.number("tolerance", solver.tolerance, Range::halfOpen(0, 1),
                  {"1", "Largest mean density error that ends the iterations."});
+  warnOfPbfsOwn(visitor, solver);
   visitor.number(
       "cfm_epsilon", solver.cfmEpsilon, Range::closed(1e-9, 1e6),
       {"1", "Softening of lambda, over the resting lattice's sum of squared constraint gradients."});

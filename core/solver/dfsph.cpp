@@ -83,6 +83,7 @@ void stages::pressFreeOfDivergence(StepState& state) {
   state.iterations = density.iterations, state.densityLeft = density.left;
   // What walls and wall friction see is the push of both.
   parallelEach(state.pool, n, [&](std::size_t i) { state.projectedPressure[i] += buffers.potential[i]; });
+  press::bookWork(state);
   press::take(state);
 }
 

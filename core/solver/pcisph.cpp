@@ -17,6 +17,7 @@ namespace migiwa {
 void stages::pressByPrediction(StepState& state) {
   const SolverParameters& parameters = state.parameters;
   press::measure(state);
+  const WallWork before = state.wallWork;
   std::fill(state.projectedPressure.begin(), state.projectedPressure.end(), 0.0F);
   while (true) {
     state.errors.push_back(press::predictDensity(state));
@@ -28,6 +29,8 @@ void stages::pressByPrediction(StepState& state) {
       state.projectedPressure[i] = std::max(state.projectedPressure[i] + change, 0.0F);
     });
     press::push(state);
+    state.wallWork = before;
+    press::bookWork(state);
     ++state.iterations;
   }
   press::take(state);

@@ -1,13 +1,13 @@
-// Penalty walls (Moore & Wilhelms 1988, "Collision Detection and Response for Computer Animation"; Mueller et
-// al. 2004): a spring and a damper push a particle out of the wall,
+// Penalty walls, that the introduction of [FM] names as the most common ones (Mueller et al. 2004, Monaghan
+// 2005): a force by how far a particle has sunk into the solid. Here a spring and a damper push it out,
 //
-//   a = (k d + c u) n,    a . n >= 0,
+//   a = max(k d + c u, 0) n
 //
 // d being how much nearer to the wall than at rest, half a spacing, its centre is, u the speed at which it
-// goes in, relative to the wall. The spring carries 40 layers at rest at a quarter of a spacing; the damper
-// is half of the critical one. Deviations: spring and damper are taken at the end of the step (implicit
-// Euler), so that no stiffness limits the step; a tenth of a spacing in front of the wall particles are kept
-// out as by all walls, so that none is lost.
+// goes in, relative to the wall. [FM] has no formula: k and c are our own. The spring carries 40 layers at
+// a quarter of a spacing; the damper is half of the critical one. Both are taken at the end of the step
+// (implicit Euler), so that no stiffness limits the step. A tenth of a spacing in front of the wall particles
+// are kept out as by all walls, so that none is lost.
 #include <algorithm>
 #include <cmath>
 

@@ -35,6 +35,10 @@ void rate(StepState& state);
 /// neighbourhood is full, for neighbours push, too; less where there are few. `squares`: sum_k |grad_k s|^2.
 float stiffness(const StepState& state, float squares);
 
+/// Adds to state.wallWork the work of moving walls in the push by state.projectedPressure, of density and
+/// gamma as they were in it: predictDensity() changes both.
+void bookWork(StepState& state);
+
 /// The step goes on with what push() has found.
 void take(StepState& state);
 

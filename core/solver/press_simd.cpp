@@ -280,6 +280,9 @@ void press::take(StepState& state) {
     state.particles.velocity[i] = state.projection.velocity[i];
     state.lambda[i] = -toLambda * state.projectedPressure[i] / (state.density[i] * state.density[i]);
   });
+}
+
+void press::bookWork(StepState& state) {
   if (!state.boundary.moves()) return;
   state.wallWork.add(parallelSum(state.pool, state.wallSlots.size(), [&](std::size_t k) {
     const WallSlot& slot = state.wallSlots[k];

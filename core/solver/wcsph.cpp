@@ -27,6 +27,7 @@ void stages::pressByDensity(StepState& state) {
   });
   const auto alpha = static_cast<float>(state.parameters.wcsph.viscosity);
   press::push(state, alpha * state.soundSpeed * 0.5F * state.supportRadius);
+  press::bookWork(state);
   press::take(state);
 }
 

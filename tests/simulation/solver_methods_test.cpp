@@ -82,6 +82,25 @@ TEST_P(SolverMethods, BlocksThatMeetKeepTheirMomentum) {
   EXPECT_NE((simulation.view().velocities.front().xyz() - Vec3f(1, 0.1F, 0)).norm(), 0);
 }
 
+// A block is thrown at a plate that moves at 1 m/s through free space: the only force is the plate's, so that
+// its work is the impulse that the block gets, however few iterations find it.
+TEST_P(SolverMethods, AMovingWallDoesTheWorkOfItsImpulse) {
+  Scene scene = with(parseScene(R"({ "format": 1, "particle_spacing": 0.05, "gravity": [0, 0, 0],
+      "fluid": [{ "shape": "box", "min": [0, 0, 0], "max": [0.3, 0.3, 0.3], "velocity": [-4, 0, 0] }],
+      "boundary": { "surfaces": [{ "shape": "box", "fluid": "outside", "min": [-0.4, -1, -1],
+          "max": [-0.1, 1.3, 1.3], "motion": { "velocity": [1, 0, 0] } }] } })",
+                                "plate.json"));
+  for (const int least : {1, scene.solver.minIterations}) {
+    scene.solver.minIterations = least;
+    Simulation simulation(scene, 1);
+    const double before = momentum(simulation).x();
+    for (int k = 0; k < 20; ++k) simulation.advanceFrame();
+    const double impulse = momentum(simulation).x() - before;
+    ASSERT_GT(impulse, 4.5 * static_cast<double>(simulation.view().positions.size()));
+    EXPECT_NEAR(simulation.statistics().energy.walls / impulse, 1, 1e-5) << least;
+  }
+}
+
 // p = rho g z, and each within its own bound.
 TEST_P(SolverMethods, WaterAtRestHasThePressureOfItsDepth) {
   constexpr int kLayers = 12;
@@ -441,6 +460,15 @@ TEST(SolverKeys, SayWhatDoesNotBelongToTheMethod) {
   };
   EXPECT_TRUE(warned(R"({"method": "dfsph", "wcsph": {}})", "wcsph"));
   EXPECT_FALSE(warned(R"({"method": "wcsph", "wcsph": {}})", "wcsph"));
+  const std::string ofPbf = R"("tolerance": 0.03, "min_iterations": 2)";
+  EXPECT_TRUE(warned(R"({"method": "dfsph", )" + ofPbf + "}",
+                     "tolerance: 0.03 is that of the scene; dfsph's own is 0.001"));
+  EXPECT_TRUE(warned(R"({"method": "pcisph", )" + ofPbf + "}",
+                     "min_iterations: 2 is that of the scene; pcisph's own is 3"));
+  EXPECT_FALSE(warned(R"({"method": "dfsph", )" + ofPbf + "}", "min_iterations"));
+  EXPECT_FALSE(warned(R"({"method": "dfsph", "tolerance": 0.0005})", "tolerance"));
+  EXPECT_FALSE(warned(R"({"method": "wcsph", )" + ofPbf + "}", "tolerance")) << "it has no iterations";
+  EXPECT_FALSE(warned("{" + ofPbf + "}", "tolerance"));
   EXPECT_TRUE(warned(R"({"method": "dfsph", "velocity_step": "projection"})", "velocity_step"));
   try {
     static_cast<void>(parsedWith(R"({"method": "wcsph", "kernel": "poly6"})"));
