@@ -328,6 +328,7 @@ void WhatIfSession::begin(WhatIfModel& model, SimulationThread& simulation, cons
   asking_ = std::async(
       std::launch::async, [state = std::move(state), copy = copy_, moment = moment_, threads = threads_,
                            frames = model.frames, scene = simulation.scene(), settings]() mutable {
+        letOthersGoFirst();
         Outcome outcome;
         outcome.frames = frames;
         try {

@@ -1,6 +1,7 @@
 #include "app/ui/shown_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -15,13 +16,20 @@ namespace {
 /// Where a letter lies in the fonts' texture: its upper left and lower right corner.
 using Place = std::array<float, 4>;
 
-std::map<Place, char> letters() {
-  std::map<Place, char> result;
+struct KnownLetter {
+  char letter;
+  const ImFontGlyph* glyph;
+  float space;  ///< how far a space advances, in the glyph's pixels
+};
+
+std::map<Place, KnownLetter> letters() {
+  std::map<Place, KnownLetter> result;
   for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
     for (const ImFontGlyph& glyph : font->Glyphs)
       if (glyph.Visible != 0)
-        result[{glyph.U0, glyph.V0, glyph.U1, glyph.V1}] =
-            glyph.Codepoint < 128 ? static_cast<char>(glyph.Codepoint) : '?';
+        result[{glyph.U0, glyph.V0, glyph.U1, glyph.V1}] = {
+            glyph.Codepoint < 128 ? static_cast<char>(glyph.Codepoint) : '?', &glyph,
+            font->GetCharAdvance(' ')};
   return result;
 }
 
@@ -36,24 +44,24 @@ struct ShownLetters {
 };
 
 ShownLetters lettersShown() {
-  // A space is wider.
-  const float adjoining = 0.2F * ImGui::GetIO().Fonts->Fonts.front()->FontSize;
-  const std::map<Place, char> known = letters();
+  const std::map<Place, KnownLetter> known = letters();
   ShownLetters all;
   const ImDrawData& drawn = *ImGui::GetDrawData();
   for (int list = 0; list < drawn.CmdListsCount; ++list) {
     const ImVector<ImDrawVert>& corners = drawn.CmdLists[list]->VtxBuffer;
-    ImVec2 end{-1e9F, 0};
+    ImVec2 end{-1e9F, 0};  // where a letter that adjoins begins, and the lower edge of the last one
     for (int k = 0; k + 3 < corners.Size; ++k) {
       const ImDrawVert &first = corners[k], &last = corners[k + 2];
-      const auto letter = known.find({first.uv.x, first.uv.y, last.uv.x, last.uv.y});
-      if (letter == known.end()) continue;
-      const float gap = first.pos.x - end.x;
-      const bool sameLine = first.pos.y < end.y;
+      const auto found = known.find({first.uv.x, first.uv.y, last.uv.x, last.uv.y});
+      if (found == known.end()) continue;
+      const auto& [letter, glyph, space] = found->second;
+      const float scale = (last.pos.x - first.pos.x) / (glyph->X1 - glyph->X0);
+      const float begin = first.pos.x - scale * glyph->X0;
+      const bool adjoins = first.pos.y < end.y && std::abs(begin - end.x) < 0.5F * scale * space;
       const float x = 0.5F * (first.pos.x + last.pos.x), y = 0.5F * (first.pos.y + last.pos.y);
-      if (!sameLine || gap < -adjoining || gap > adjoining) all.add(' ', x, y);
-      all.add(letter->second, x, y);
-      end = last.pos;
+      if (!adjoins) all.add(' ', x, y);
+      all.add(letter, x, y);
+      end = {begin + scale * glyph->AdvanceX, last.pos.y};
       k += 3;
     }
     all.add(' ', end.x, end.y);

@@ -39,7 +39,9 @@ class TimePlot {
     const float size = ImGui::GetFontSize();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-    if (range_.high - range_.low <= 0) range_.high = range_.low + 1;
+    // What differs by rounding alone is drawn as what it is, constant.
+    const double largest = std::max(std::abs(range_.low), std::abs(range_.high));
+    if (range_.high - range_.low <= 1e-5 * largest) range_.high = range_.low + std::max(1.0, largest);
     const double room = 0.06 * (range_.high - range_.low);
     range_.low -= room, range_.high += room;
     Ticks ticks = roundTicks(range_.low, range_.high, 3);

@@ -146,7 +146,8 @@ UiCommands Viewer::frame(const FrameView& frame, const RunStatus& run, const Inp
   if (afterwards_) afterwards_ = undoable();
   last_ = input;
 
-  drawScene(asShown(frame), area, drawing);
+  // A picture that is kept is whole, and of the frame of now.
+  drawScene(asShown(frame), area, commands.savePicture ? SceneDrawing{} : drawing);
   ui_.end(true);
   return commands;
 }

@@ -174,15 +174,15 @@ std::optional<Prepared> show(GlfwWindow& window, const Scene& scene,
     content.draw(input, width, height, {detail.share(moving), first});
     content.viewer().copyToWindow();
     window.finish();
+    // Without the swap, which waits for the screen.
+    const double took = std::chrono::duration<double>(Clock::now() - last).count();
     if (content.viewer().drewScene()) {
       sceneDrawn = Clock::now();
-      detail.drawn(moving, std::chrono::duration<double>(sceneDrawn - last).count());
+      detail.drawn(moving, took);
     }
     window.swap();
     content.carryOut();
-    if (content.run().playing)
-      between = std::max(kShortestFrame,
-                         std::chrono::duration<double>(Clock::now() - last).count() / kDrawingShare);
+    if (content.run().playing) between = std::max(kShortestFrame, took / kDrawingShare);
     redraws = std::max(redraws - 1, 0);
     ++drawn;
   }

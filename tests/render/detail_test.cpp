@@ -50,8 +50,8 @@ class ReducedScene : public ::testing::Test {
  protected:
   static constexpr int kWidth = 800, kHeight = 600;
 
-  Image draw(const SceneDrawing& drawing) {
-    viewer_.frame(frame_.view(), {}, {}, kWidth, kHeight, drawing);
+  Image draw(const SceneDrawing& drawing, const InputState& input = {}) {
+    viewer_.frame(frame_.view(), {}, input, kWidth, kHeight, drawing);
     return viewer_.picture();
   }
 
@@ -96,6 +96,15 @@ TEST_F(ReducedScene, WhatHasNotChangedIsNotDrawnAnew) {
   EXPECT_TRUE(viewer_.drewScene()) << "another frame";
   draw({1, {}});
   EXPECT_TRUE(viewer_.drewScene());
+}
+
+TEST_F(ReducedScene, APictureThatIsKeptIsWhole) {
+  const Image whole = draw({});
+  EXPECT_NE(draw({0.5, 7}).rgba, whole.rgba);
+  InputState input;
+  input.keys[static_cast<std::size_t>(Key::p)] = true;
+  EXPECT_EQ(draw({0.5, 7}, input).rgba, whole.rgba);
+  EXPECT_NE(draw({0.5, 7}).rgba, whole.rgba);
 }
 
 }  // namespace detail_test
