@@ -21,7 +21,7 @@ class HeldSimulation : public ::testing::Test {
   /// Whether one more frame has begun since the last look; waits for it only where one has to come.
   bool movesOn(bool expected) {
     const double before = frame_.info.time;
-    for (int k = 0; k < 30000 && expected && frame_.info.time <= before; ++k) {
+    for (int k = 0; k < 300000 && expected && frame_.info.time <= before; ++k) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       simulation_.takeFrame(frame_);
     }
@@ -116,7 +116,7 @@ TEST(StoppedSimulation, RefusesToPlayAndToStep) {
   SimulationThread simulation(readScene(MIGIWA_SOURCE_DIR "/scenes/hard/lid_closed.json"), 1,
                               Pace::unlimited);
   simulation.play();
-  for (int k = 0; k < 30000 && !simulation.status().stopped; ++k)
+  for (int k = 0; k < 300000 && !simulation.status().stopped; ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ASSERT_TRUE(simulation.status().stopped);
   simulation.play();

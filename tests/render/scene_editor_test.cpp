@@ -74,14 +74,14 @@ class SceneEditorTest : public ::testing::Test {
   void step() {
     const double before = frame_.info.time;
     simulation_->step();
-    for (int k = 0; k < 30000 && frame_.info.time <= before; ++k) {
+    for (int k = 0; k < 300000 && frame_.info.time <= before; ++k) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       simulation_->takeFrame(frame_);
     }
   }
   /// Waits until the status says so of the state's file.
   void awaitState(const std::string& note) {
-    for (int k = 0; k < 30000 && simulation_->status().stateNote != note; ++k)
+    for (int k = 0; k < 300000 && simulation_->status().stateNote != note; ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_EQ(simulation_->status().stateNote, note);
     idle(2);

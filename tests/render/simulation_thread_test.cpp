@@ -219,7 +219,7 @@ class SavedStateTest : public SimulationThreadTest {
   /// Waits until the status says what became of it.
   RunStatus told(const SimulationThread& simulation) {
     RunStatus status;
-    for (int k = 0; k < 30000 && (status = simulation.status()).stateNote.empty(); ++k)
+    for (int k = 0; k < 300000 && (status = simulation.status()).stateNote.empty(); ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return status;
   }
@@ -307,7 +307,7 @@ TEST_F(SavedStateTest, FaultsLeaveTheSimulationAsItIs) {
   settings_.boundary.handling = BoundaryHandling::none;
   simulation_.apply(settings_);
   simulation_.loadState(file_);
-  for (int k = 0; k < 30000 && simulation_.status().stateFaults.empty(); ++k)
+  for (int k = 0; k < 300000 && simulation_.status().stateFaults.empty(); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   status = simulation_.status();
   ASSERT_EQ(status.stateFaults.size(), 2U);

@@ -50,7 +50,7 @@ class TimeLineTest : public ::testing::Test {
 
   /// Waits until nothing is under way, and takes the frame that is shown then.
   void arrive() {
-    for (int k = 0; k < 60000; ++k) {
+    for (int k = 0; k < 300000; ++k) {
       if (!simulation_->status().line.underWay) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -60,7 +60,7 @@ class TimeLineTest : public ::testing::Test {
   void stepOn(long frames) {
     const long end = simulation_->status().line.frame + frames;
     for (long k = 0; k < frames; ++k) simulation_->step();
-    for (int k = 0; k < 60000 && simulation_->status().line.frame < end; ++k)
+    for (int k = 0; k < 300000 && simulation_->status().line.frame < end; ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     arrive();
   }

@@ -41,7 +41,7 @@ class Travel : public TimeLineTest {
     Gate::closed = true;
     const long before = Gate::begun;
     ask();
-    for (int k = 0; k < 60000 && Gate::begun == before; ++k)
+    for (int k = 0; k < 300000 && Gate::begun == before; ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_GT(Gate::begun, before);
   }
@@ -98,7 +98,7 @@ TEST_F(Travel, AWayThatIsOvertakenIsDropped) {
   EXPECT_EQ(hash(), straight.hashes[63]);
   EXPECT_FALSE(simulation_->status().playing);
   simulation_->play();
-  for (int k = 0; k < 60000 && frame() < 110; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (int k = 0; k < 300000 && frame() < 110; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_GE(frame(), 110) << "it plays on from there, and beyond its end";
 }
 
@@ -169,7 +169,7 @@ TEST_F(Travel, AFrameThatHasThrownIsNotGoneOnFrom) {
   const Straight straight = Straight::run(smallScene(), 40);
   Gate::throws = true;
   simulation_->step();
-  for (int k = 0; k < 60000 && !simulation_->status().stopped; ++k)
+  for (int k = 0; k < 300000 && !simulation_->status().stopped; ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ASSERT_EQ(simulation_->status().trouble, "in the midst of a frame");
   Gate::throws = false;
@@ -186,7 +186,7 @@ TEST_F(Travel, AThrowOnTheWayLeavesThePanelWithWhatIsInForce) {
   ASSERT_NO_FATAL_FAILURE(setOut(1, 50 * 0.005));
   Gate::throws = true;
   Gate::closed = false;
-  for (int k = 0; k < 60000 && !simulation_->status().stopped; ++k)
+  for (int k = 0; k < 300000 && !simulation_->status().stopped; ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   Gate::throws = false;
   look();
