@@ -144,11 +144,12 @@ screenshotsOfWindow() {
   scriptPicture window_keys dam_break <<<'[{"play_to": 0.5}, {"key": "f1"}, {"picture": "picture.png"}]'
   scriptPicture window_time_line dam_break <<'EVENTS'
 [{"play_to": 1.4}, {"press": "Max iterations", "at": 0.5}, {"wait": 0.5}, {"key": "z", "control": true}, {"wait": 0.5}, {"key": "home"},
- {"wait": 1}, {"play_to": 0.5}, {"key": "c"}, {"wait": 0.5}, {"play_to": 1.1}, {"picture": "picture.png"}]
+ {"wait": 1}, {"play_to": 0.5}, {"key": "c"}, {"wait": 0.5}, {"play_to": 1.1}, {"move": [0.5, 0.2]},
+ {"wait": 0.5}, {"picture": "picture.png"}]
 EVENTS
   scriptPicture window_particle dam_break \
     --set '/view/camera={"eye":[0.45,0.3,1.9],"target":[0.36,0.1,0.77],"fov_degrees":25}' <<'EVENTS'
-[{"play_to": 1.5}, {"click": [0.416, 0.648]}, {"wait_for": "reference"}, {"wait_while": "more methods", "within": 300}, {"move": [0.95, 0.95]}, {"picture": "picture.png"}]
+[{"play_to": 1.5}, {"click": [0.416, 0.648]}, {"wait_for": "monte_carlo", "within": 300}, {"move": [0.95, 0.95]}, {"picture": "picture.png"}]
 EVENTS
   scriptPicture window_particles dam_break --size 1280x900 --scale 1 --set '/view/clip=null' <<'EVENTS'
 [{"play_to": 0.9}, {"press": "Solver"}, {"press": "Section"}, {"press": "Particles"}, {"press": "Select"}, {"drag_view": [[0.62, 0.3], [0.9, 0.78]]},

@@ -407,11 +407,14 @@ void runScript(const std::filesystem::path& script, const RenderJob& job, const 
   std::vector<Fault> faults;
   for (const DocumentFault& fault : document.faults)
     faults.push_back({script.string() + ":" + fault.pointer, fault.message});
-  const std::vector<int> lines = linesOfFaults(faults, text, script);
-  for (std::size_t k = 0; k < faults.size(); ++k)
-    collect.add(
-        {document.broken ? faults[k].place : script.string() + ":" + std::to_string(lines[k]),
-         document.broken ? faults[k].message : document.faults[k].pointer + ": " + faults[k].message});
+  // Of a text that is no JSON the place is a line.
+  if (!document.broken) {
+    const std::vector<int> lines = linesOfFaults(faults, text, script);
+    for (std::size_t k = 0; k < faults.size(); ++k)
+      faults[k] = {script.string() + ":" + std::to_string(lines[k]),
+                   document.faults[k].pointer + ": " + document.faults[k].message};
+  }
+  for (Fault& fault : faults) collect.add(std::move(fault));
   collect.raise();
   if (!document.root.is_array())
     throw InputError(script.string(), "expected a list of events, found " + describeJson(document.root));

@@ -49,19 +49,20 @@ ShownLetters lettersShown() {
   const ImDrawData& drawn = *ImGui::GetDrawData();
   for (int list = 0; list < drawn.CmdListsCount; ++list) {
     const ImVector<ImDrawVert>& corners = drawn.CmdLists[list]->VtxBuffer;
-    ImVec2 end{-1e9F, 0};  // where a letter that adjoins begins, and the lower edge of the last one
+    ImVec2 end{-1e9F, 0};  // where a letter that adjoins begins, and the top of its line
     for (int k = 0; k + 3 < corners.Size; ++k) {
       const ImDrawVert &first = corners[k], &last = corners[k + 2];
       const auto found = known.find({first.uv.x, first.uv.y, last.uv.x, last.uv.y});
       if (found == known.end()) continue;
       const auto& [letter, glyph, space] = found->second;
       const float scale = (last.pos.x - first.pos.x) / (glyph->X1 - glyph->X0);
-      const float begin = first.pos.x - scale * glyph->X0;
-      const bool adjoins = first.pos.y < end.y && std::abs(begin - end.x) < 0.5F * scale * space;
+      const ImVec2 begin(first.pos.x - scale * glyph->X0, first.pos.y - scale * glyph->Y0);
+      const float near = 0.5F * scale * space;
+      const bool adjoins = std::abs(begin.y - end.y) < near && std::abs(begin.x - end.x) < near;
       const float x = 0.5F * (first.pos.x + last.pos.x), y = 0.5F * (first.pos.y + last.pos.y);
       if (!adjoins) all.add(' ', x, y);
       all.add(letter, x, y);
-      end = {begin + scale * glyph->AdvanceX, last.pos.y};
+      end = {begin.x + scale * glyph->AdvanceX, begin.y};
       k += 3;
     }
     all.add(' ', end.x, end.y);

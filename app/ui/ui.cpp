@@ -298,6 +298,41 @@ ImFont* load(const char* name, float pixels) {
   return ImGui::GetIO().Fonts->AddFontFromFileTTF(file.c_str(), pixels, &config, kRanges);
 }
 
+struct ThemeColor {
+  ImGuiCol which;
+  ImVec4 dark, light;
+};
+const ThemeColor kThemeColors[]{
+    {ImGuiCol_Text, {0.90F, 0.92F, 0.94F, 1}, {0.10F, 0.13F, 0.17F, 1}},
+    {ImGuiCol_TextDisabled, {0.52F, 0.57F, 0.63F, 1}, {0.36F, 0.41F, 0.47F, 1}},
+    {ImGuiCol_WindowBg, {0.115F, 0.135F, 0.165F, 1}, {0.945F, 0.952F, 0.960F, 1}},
+    {ImGuiCol_PopupBg, {0.090F, 0.108F, 0.135F, 0.98F}, {0.985F, 0.988F, 0.992F, 0.98F}},
+    {ImGuiCol_Border, {1, 1, 1, 0.10F}, {0, 0, 0, 0.18F}},
+    {ImGuiCol_FrameBg, {0.200F, 0.230F, 0.275F, 1}, {0.855F, 0.875F, 0.895F, 1}},
+    {ImGuiCol_FrameBgHovered, {0.245F, 0.285F, 0.340F, 1}, {0.800F, 0.830F, 0.860F, 1}},
+    {ImGuiCol_FrameBgActive, {0.275F, 0.325F, 0.390F, 1}, {0.745F, 0.785F, 0.825F, 1}},
+    {ImGuiCol_ScrollbarBg, {0, 0, 0, 0.20F}, {0, 0, 0, 0.06F}},
+    {ImGuiCol_ScrollbarGrab, {1, 1, 1, 0.18F}, {0, 0, 0, 0.22F}},
+    {ImGuiCol_ScrollbarGrabHovered, {1, 1, 1, 0.28F}, {0, 0, 0, 0.32F}},
+    {ImGuiCol_ScrollbarGrabActive, {1, 1, 1, 0.38F}, {0, 0, 0, 0.42F}},
+    {ImGuiCol_CheckMark, {0.33F, 0.82F, 0.76F, 1}, {0.02F, 0.47F, 0.43F, 1}},
+    {ImGuiCol_SliderGrab, {0.25F, 0.62F, 0.60F, 0.65F}, {0.20F, 0.62F, 0.59F, 0.65F}},
+    {ImGuiCol_SliderGrabActive, {0.33F, 0.78F, 0.74F, 0.75F}, {0.10F, 0.52F, 0.49F, 0.75F}},
+    {ImGuiCol_Button, {0.165F, 0.375F, 0.400F, 1}, {0.690F, 0.850F, 0.845F, 1}},
+    {ImGuiCol_ButtonHovered, {0.200F, 0.465F, 0.490F, 1}, {0.600F, 0.795F, 0.790F, 1}},
+    {ImGuiCol_ButtonActive, {0.235F, 0.560F, 0.580F, 1}, {0.510F, 0.735F, 0.730F, 1}},
+    {ImGuiCol_Header, {0.155F, 0.185F, 0.225F, 1}, {0.835F, 0.862F, 0.890F, 1}},
+    {ImGuiCol_HeaderHovered, {0.205F, 0.245F, 0.300F, 1}, {0.775F, 0.815F, 0.855F, 1}},
+    {ImGuiCol_HeaderActive, {0.235F, 0.285F, 0.350F, 1}, {0.720F, 0.770F, 0.820F, 1}},
+    {ImGuiCol_Separator, {1, 1, 1, 0.10F}, {0, 0, 0, 0.15F}},
+    {ImGuiCol_NavHighlight, {0.33F, 0.82F, 0.76F, 1}, {0.02F, 0.47F, 0.43F, 1}},
+    {ImGuiCol_PlotLinesHovered, {1, 0.561F, 0.451F, 1}, {0.70F, 0.19F, 0.06F, 1}},
+    {ImGuiCol_PlotLines, {0.278F, 0.722F, 0.675F, 1}, {0, 0.47F, 0.43F, 1}},
+    {ImGuiCol_PlotHistogram, {0.914F, 0.769F, 0.416F, 1}, {0.60F, 0.38F, 0, 1}},
+    {ImGuiCol_TableRowBgAlt, {0.067F, 0.086F, 0.114F, 1}, {1, 1, 1, 1}},
+    {ImGuiCol_TableBorderLight, {1, 1, 1, 0.11F}, {0, 0, 0, 0.12F}},
+};
+
 }  // namespace
 
 Fonts loadFonts(float pixels) {
@@ -323,66 +358,8 @@ void applyTheme(float pixels, Theme theme) {
   style.ScrollbarRounding = 4;
   style.AntiAliasedLinesUseTex = false;
 
-  const auto set = [&style](ImGuiCol which, float r, float g, float b, float a = 1) {
-    style.Colors[which] = {r, g, b, a};
-  };
-  set(ImGuiCol_Text, 0.90F, 0.92F, 0.94F);
-  set(ImGuiCol_TextDisabled, 0.52F, 0.57F, 0.63F);
-  set(ImGuiCol_WindowBg, 0.115F, 0.135F, 0.165F);
-  set(ImGuiCol_PopupBg, 0.090F, 0.108F, 0.135F, 0.98F);
-  set(ImGuiCol_Border, 1, 1, 1, 0.10F);
-  set(ImGuiCol_FrameBg, 0.200F, 0.230F, 0.275F);
-  set(ImGuiCol_FrameBgHovered, 0.245F, 0.285F, 0.340F);
-  set(ImGuiCol_FrameBgActive, 0.275F, 0.325F, 0.390F);
-  set(ImGuiCol_ScrollbarBg, 0, 0, 0, 0.20F);
-  set(ImGuiCol_ScrollbarGrab, 1, 1, 1, 0.18F);
-  set(ImGuiCol_ScrollbarGrabHovered, 1, 1, 1, 0.28F);
-  set(ImGuiCol_ScrollbarGrabActive, 1, 1, 1, 0.38F);
-  set(ImGuiCol_CheckMark, 0.33F, 0.82F, 0.76F);
-  set(ImGuiCol_SliderGrab, 0.25F, 0.62F, 0.60F, 0.65F);
-  set(ImGuiCol_SliderGrabActive, 0.33F, 0.78F, 0.74F, 0.75F);
-  set(ImGuiCol_Button, 0.165F, 0.375F, 0.400F);
-  set(ImGuiCol_ButtonHovered, 0.200F, 0.465F, 0.490F);
-  set(ImGuiCol_ButtonActive, 0.235F, 0.560F, 0.580F);
-  set(ImGuiCol_Header, 0.155F, 0.185F, 0.225F);
-  set(ImGuiCol_HeaderHovered, 0.205F, 0.245F, 0.300F);
-  set(ImGuiCol_HeaderActive, 0.235F, 0.285F, 0.350F);
-  set(ImGuiCol_Separator, 1, 1, 1, 0.10F);
-  set(ImGuiCol_NavHighlight, 0.33F, 0.82F, 0.76F);
-  set(ImGuiCol_PlotLinesHovered, 1, 0.561F, 0.451F);
-  set(ImGuiCol_PlotLines, 0.278F, 0.722F, 0.675F);
-  set(ImGuiCol_PlotHistogram, 0.914F, 0.769F, 0.416F);
-  set(ImGuiCol_TableRowBgAlt, 0.067F, 0.086F, 0.114F);
-  set(ImGuiCol_TableBorderLight, 1, 1, 1, 0.11F);
-  if (theme == Theme::dark) return;
-  set(ImGuiCol_Text, 0.10F, 0.13F, 0.17F);
-  set(ImGuiCol_TextDisabled, 0.36F, 0.41F, 0.47F);
-  set(ImGuiCol_WindowBg, 0.945F, 0.952F, 0.960F);
-  set(ImGuiCol_PopupBg, 0.985F, 0.988F, 0.992F, 0.98F);
-  set(ImGuiCol_Border, 0, 0, 0, 0.18F);
-  set(ImGuiCol_FrameBg, 0.855F, 0.875F, 0.895F);
-  set(ImGuiCol_FrameBgHovered, 0.800F, 0.830F, 0.860F);
-  set(ImGuiCol_FrameBgActive, 0.745F, 0.785F, 0.825F);
-  set(ImGuiCol_ScrollbarBg, 0, 0, 0, 0.06F);
-  set(ImGuiCol_ScrollbarGrab, 0, 0, 0, 0.22F);
-  set(ImGuiCol_ScrollbarGrabHovered, 0, 0, 0, 0.32F);
-  set(ImGuiCol_ScrollbarGrabActive, 0, 0, 0, 0.42F);
-  set(ImGuiCol_CheckMark, 0.02F, 0.47F, 0.43F);
-  set(ImGuiCol_SliderGrab, 0.20F, 0.62F, 0.59F, 0.65F);
-  set(ImGuiCol_SliderGrabActive, 0.10F, 0.52F, 0.49F, 0.75F);
-  set(ImGuiCol_Button, 0.690F, 0.850F, 0.845F);
-  set(ImGuiCol_ButtonHovered, 0.600F, 0.795F, 0.790F);
-  set(ImGuiCol_ButtonActive, 0.510F, 0.735F, 0.730F);
-  set(ImGuiCol_Header, 0.835F, 0.862F, 0.890F);
-  set(ImGuiCol_HeaderHovered, 0.775F, 0.815F, 0.855F);
-  set(ImGuiCol_HeaderActive, 0.720F, 0.770F, 0.820F);
-  set(ImGuiCol_Separator, 0, 0, 0, 0.15F);
-  set(ImGuiCol_NavHighlight, 0.02F, 0.47F, 0.43F);
-  set(ImGuiCol_PlotLinesHovered, 0.70F, 0.19F, 0.06F);
-  set(ImGuiCol_PlotLines, 0, 0.47F, 0.43F);
-  set(ImGuiCol_PlotHistogram, 0.60F, 0.38F, 0);
-  set(ImGuiCol_TableRowBgAlt, 1, 1, 1);
-  set(ImGuiCol_TableBorderLight, 0, 0, 0, 0.12F);
+  for (const ThemeColor& color : kThemeColors)
+    style.Colors[color.which] = theme == Theme::dark ? color.dark : color.light;
 }
 
 }  // namespace migiwa

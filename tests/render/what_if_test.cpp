@@ -28,8 +28,9 @@ class WhatIfTest : public ::testing::Test {
   }
   void stepTo(long frames) {
     while (frame_.info.steps < frames) {
+      const long before = frame_.info.steps;  // that of the start is still to be taken at first
       simulation_->step();
-      while (!simulation_->takeFrame(frame_)) std::this_thread::yield();
+      while (!simulation_->takeFrame(frame_) || frame_.info.steps == before) std::this_thread::yield();
       viewer_->frame(frame_.view(), simulation_->status(), InputState{}, kWidth, kHeight);
     }
   }
