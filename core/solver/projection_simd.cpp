@@ -37,6 +37,13 @@
 // neighbours make it ill-conditioned, in spray, the conserving sum of pairs stands in for it. The matrix is
 // symmetric and positive definite: conjugate gradients, preconditioned by the diagonal, from the pressure of
 // the step before, until a fifth of what that leaves is left, or less than the tolerance.
+//
+// Pressure and velocity have the same places, so there is noise whose divergence reads zero (Rider 1995). What
+// moves positions alone feeds it, and water at rest boils. So a step takes out
+//
+//   v_i -= nu dt sum_j F_ij (v*_i - v*_j),   nu = 0.1 spacing^2 / T
+//
+// a viscosity that vanishes with the spacing and does not depend on the time step. Its pairs are antisymmetric.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,11 +74,22 @@ struct PotentialSums {
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
+/// Two over the time in which a particle falls by its spacing (1/s).
+inline float fallRate(const StepState& state) {
+  return 2 * std::sqrt(0.5F * state.gravity.norm() / state.spacing);
+}
+
 /// One over the time in which less dense fluid comes together (1/s).
 inline float roomRate(const StepState& state) {
-  constexpr float kFalls = 0.5F;  // of the time in which a particle falls by its spacing
-  const float once = 1 / state.timeStep, gravity = state.gravity.norm();
-  return gravity > 0 ? std::min(once, std::sqrt(0.5F * gravity / state.spacing) / kFalls) : once;
+  const float once = 1 / state.timeStep, falls = fallRate(state);
+  return falls > 0 ? std::min(once, falls) : once;
+}
+
+/// What a step takes of the differences of velocities between neighbours, over F h^2 (1).
+inline float filterOf(const StepState& state) {
+  constexpr float kOfFall = 0.2F;
+  const float spacings = state.spacing / state.supportRadius;
+  return kOfFall * std::min(state.timeStep * fallRate(state), 1.0F) * spacings * spacings;
 }
 
 /// Density, moment, divergence and diagonal, without the surface's share, what the potential of the step
@@ -235,17 +253,23 @@ PotentialSums stepProjectionOfRange(StepState& state, float unit, float keep, fl
   return {sumLanes(square), sumLanes(magnitude)};
 }
 
-/// v -= grad phi, phi being what the w of state.paired hold. The length of grad phi becomes the image.
+/// v -= grad phi, phi being what the w of state.paired hold, and the noise. state.previous holds the velocities
+/// before. The length of grad phi becomes the image.
 void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
   const Pairs d;
   const PairScale scale(state);
   const Float4* const others = state.paired.data();
+  const Float4* const velocities = state.previous.data();
   ProjectionBuffers& buffers = state.projection;
   const float toGradient = -0.5F * scale.inverseSquare;
+  const float filter = filterOf(state);
   const bool added = state.addsWallDensity();
   for (std::size_t i = begin; i < end; ++i) {
     const PairCentre centre(others[i], scale);
+    const Float4& before = velocities[i];
+    const PairVector ux = hn::Set(d, before.x), uy = hn::Set(d, before.y), uz = hn::Set(d, before.z);
     PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
+    PairVector noiseX = hn::Zero(d), noiseY = hn::Zero(d), noiseZ = hn::Zero(d);
     const InverseMoment& inverse = buffers.inverse[i];
     const float phi = others[i].w;
     // Either the difference to the particle's own, or the sum with it.
@@ -256,8 +280,12 @@ void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end)
     for (std::size_t k = 0; k < list.size(); k += kPairs) {
       const Components neighbours = loadComponents(others, &list[k]);
       const PairOffsets pair = centre.to(neighbours, &list[k]);
-      const PairVector push = hn::Mul(hn::Add(neighbours.w, own), hn::Load(d, &factors[k]));
+      const PairVector factor = hn::Load(d, &factors[k]), push = hn::Mul(hn::Add(neighbours.w, own), factor);
       x = hn::MulAdd(push, pair.x, x), y = hn::MulAdd(push, pair.y, y), z = hn::MulAdd(push, pair.z, z);
+      const Components v = loadComponents(velocities, &list[k]);
+      noiseX = hn::MulAdd(factor, hn::Sub(ux, v.x), noiseX);
+      noiseY = hn::MulAdd(factor, hn::Sub(uy, v.y), noiseY);
+      noiseZ = hn::MulAdd(factor, hn::Sub(uz, v.z), noiseZ);
     }
     const Vec3f sum = toGradient * sumLanes(x, y, z, hn::Zero(d)).xyz();
     Vec3f gradient = sum;
@@ -268,8 +296,9 @@ void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end)
       gradient -= fall * state.wallSlots[state.wallSlot[i]].sample.pairGradient;
     }
     buffers.image[i] = gradient.norm();
+    const Vec3f noise = filter * sumLanes(noiseX, noiseY, noiseZ, hn::Zero(d)).xyz();
     Float4& velocity = state.particles.velocity[i];
-    velocity = Float4(Vec3f(velocity.xyz() - gradient));
+    velocity = Float4(Vec3f(velocity.xyz() - gradient - noise));
   }
 }
 

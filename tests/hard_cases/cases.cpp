@@ -129,10 +129,7 @@ void addBrokenMeshes(std::vector<HardCase>& cases) {
 
 /// What does not hold all that it states with velocities by projection: "What falls short" in README.md.
 bool shortByProjection(const std::string& name) {
-  static const std::set<std::string> kShort{
-      "lone_corner", "lone_wedge",   "particles_3",  "rest",          "gravity_1000", "gap_2",
-      "gap_1",       "gap_0.5",      "overlap_1",    "lid_with_slit", "dam",          "one_iteration",
-      "tolerance_0", "spacing_tiny", "spacing_huge", "far_origin",    "column",       "slim_shell_crossing"};
+  static const std::set<std::string> kShort{};
   return kShort.contains(name);
 }
 

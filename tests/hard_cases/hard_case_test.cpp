@@ -69,7 +69,6 @@ class ByProjection : public ::testing::TestWithParam<HardCase> {};
 TEST_P(ByProjection, KeepsWhatTheCaseStates) {
   Scene scene = sceneOf(GetParam());
   scene.solver.takeVelocities(VelocityStep::projection);
-  scene.effects = effectsOf(R"({"viscosity": {"xsph": 0, "affine_xsph": 0.3}})");
   Observed seen = observe(scene, GetParam().until, 1);
   seen.guards = GetParam().guards;
   for (const std::string& violation : violations(GetParam(), seen)) ADD_FAILURE() << violation;
