@@ -170,16 +170,47 @@ float tooMuch(float along, float square) {
   return along >= 0 ? 1 : 1 + 2 * along / square;
 }
 
+/// Whether the constraint has moved positions that velocities know nothing of.
+bool shiftsPositions(const StepState& state) {
+  return state.takesPressure() && state.constrains();
+}
+
+/// The velocity that the step's solve has made, effects aside (m/s).
+Vec3f solvedVelocity(const StepState& state, std::size_t i) {
+  if (shiftsPositions(state)) return state.before.pressed[i].xyz();
+  return (state.particles.position[i].xyz() - state.before.position[i].xyz()) / state.timeStep;
+}
+
+/// Takes the excess of what has been lifted by moving positions alone: all particles go the same share of the
+/// way back. Returns what it took.
+double takeFromShift(StepState& state, double excess) {
+  const auto shift = [&](std::size_t i) -> Vec3f {
+    return state.particles.position[i].xyz() - state.before.position[i].xyz() -
+           state.timeStep * state.before.pressed[i].xyz();
+  };
+  const auto lift = [&] {
+    return parallelSum(state.pool, state.particles.size(),
+                       [&](std::size_t i) { return -static_cast<double>(state.gravity.dot(shift(i))); });
+  };
+  const double lifted = lift();
+  if (lifted <= 0) return 0;
+  const auto share = static_cast<float>(std::min(1.0, excess / lifted));
+  parallelEach(state.pool, state.particles.size(), [&](std::size_t i) {
+    state.current[i].setXyz(state.particles.position[i].xyz() - share * shift(i));
+  });
+  state.particles.position.swap(state.before.position);
+  stages::projectAll(state);
+  stages::updatePositions(state);
+  return lifted - lift();
+}
+
 /// The changes of velocity that a step's solve has made, and what is taken back of them.
 class Taking {
  public:
   explicit Taking(StepState& state) : state_(state), half_(0.5F * state.timeStep * state.gravity) {
     const std::size_t n = state.particles.size();
     change_.resize(n), back_.resize(n), degree_.resize(n), group_.resize(n), gains_.resize(n);
-    forAll([&](std::size_t i) {
-      const Vec3f way = state_.particles.position[i].xyz() - state_.before.position[i].xyz();
-      change_[i] = Float4(Vec3f(way / state_.timeStep - came(i)));
-    });
+    forAll([&](std::size_t i) { change_[i] = Float4(Vec3f(solvedVelocity(state_, i) - came(i))); });
     made_ = change_;
     findGroups();
   }
@@ -220,19 +251,21 @@ class Taking {
     });
   }
 
-  /// Writes the velocities; returns how many it has changed.
-  std::size_t finish() {
+  /// How many particles' velocities change.
+  std::size_t changed() const {
     return parallelReduce(
         state_.pool, change_.size(), std::size_t{0},
         [&](std::size_t begin, std::size_t end) {
           std::size_t count = 0;
-          for (std::size_t i = begin; i < end; ++i) {
-            state_.particles.velocity[i].setXyz(came(i) + change_[i].xyz());
+          for (std::size_t i = begin; i < end; ++i)
             if (change_[i].xyz() != made_[i].xyz()) ++count;
-          }
           return count;
         },
         [](std::size_t a, std::size_t b) { return a + b; });
+  }
+  /// Writes the velocities, as they are before effects.
+  void finish() {
+    forAll([&](std::size_t i) { state_.particles.velocity[i].setXyz(came(i) + change_[i].xyz()); });
   }
 
  private:
@@ -349,9 +382,14 @@ class Taking {
 HeldEnergy holdEnergy(StepState& state, EffectPipeline& effects, double excess) {
   HeldEnergy held;
   if (excess <= 0) return held;
+  constexpr double kAll = 1 - 1e-6;
+  if (shiftsPositions(state)) {
+    held.taken = takeFromShift(state, excess);
+    if (held.taken > 0) held.particles = state.particles.size();
+    if (held.taken >= kAll * excess) return held;
+  }
   // Each pass takes what pairs can give at once; a front that lies deep in the fluid needs several.
   constexpr int kMostPasses = 32;
-  constexpr double kAll = 1 - 1e-6;
   Taking taking(state);
   for (int pass = 0; pass < kMostPasses && held.taken < kAll * excess; ++pass) {
     const double taken = taking.takeFromPairs(excess - held.taken);
@@ -359,8 +397,10 @@ HeldEnergy holdEnergy(StepState& state, EffectPipeline& effects, double excess) 
     if (taken <= 1e-3 * held.taken) break;
   }
   if (held.taken < kAll * excess) held.taken += taking.takeFromGroups(excess - held.taken);
-  held.particles = taking.finish();
-  if (held.particles == 0) return {};
+  const std::size_t changed = taking.changed();
+  if (changed == 0) return held;
+  held.particles = std::max(held.particles, changed);
+  taking.finish();
   state.effectWork -= std::exchange(state.velocityEffectWork, 0);
   effects.changeVelocities(state, {});
   return held;

@@ -49,6 +49,7 @@ void resizeTight(std::vector<T>& values, std::size_t size) {
 /// Of the start of a step; velocities with gravity's gain.
 struct BeforeStep {
   std::vector<Float4> position, velocity;
+  std::vector<Float4> pressed;  ///< of a projection: what the pressure has made of the velocities
 };
 
 /// A push by a wall that gives no speed: where its particle began the step until then.

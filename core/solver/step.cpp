@@ -296,6 +296,7 @@ void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& wat
 /// The solved positions, and the velocities that go with them; what was before is kept if `keep`.
 void takeSolution(StepState& state, bool keep) {
   if (state.takesPressure()) {
+    if (keep && state.constrains()) state.before.pressed = state.particles.velocity;
     stages::updatePositions(state);
   } else {
     stages::updateVelocities(state, keep);

@@ -130,12 +130,15 @@ Vec3f clipMove(const WallIndex& walls, const Vec3f& from, bool stepBegan, const 
 /// What holdEnergy() has done.
 struct HeldEnergy {
   double taken = 0;           ///< (m^2/s^2), a sum over the particles
-  std::size_t particles = 0;  ///< whose velocity it has changed
+  std::size_t particles = 0;  ///< whose velocity or place it has changed
 };
 
+// With a projection, what moves positions alone lifts particles that get no slower by it. That is taken back
+// first: all go a share of the way back.
+
 /// Takes `excess` (m^2/s^2, a sum over the particles) of a finished step's energy back, or as much of it as
-/// there is, where it was gained. Only velocities change; positions stay, and so what the solve has undone of
-/// density errors. What moving walls gave less by it is taken off their work, and effects on velocities act
+/// there is, where it was gained. Of positions only the shift of a projection changes; else they stay, and so
+/// what the solve has undone of density errors. What moving walls gave less by it is taken off their work, and effects on velocities act
 /// anew. The neighbours are those that the step was solved with.
 HeldEnergy holdEnergy(StepState& state, EffectPipeline& effects, double excess);
 
