@@ -31,19 +31,19 @@
 //
 //   s_i = 2 |(m/rho0) sum_j grad W_ij - rho_i/rho0 grad gamma_i| / (e h)
 //
-// e being what a density below that of rest says of a plane surface: rho_i/rho0 = gamma(e). The gradient is
-// exact for a pressure that is linear in space, whatever the packing of the particles and however few lie on
-// one side: water at rest stays at rest. It does not conserve momentum to the last digit; where too few
-// neighbours make it ill-conditioned, in spray, the conserving sum of pairs stands in for it. The matrix is
-// symmetric and positive definite: conjugate gradients, preconditioned by the diagonal, from the pressure of
-// the step before, until a fifth of what that leaves is left, or less than the tolerance.
+// e being what a density below that of rest says of a plane surface: rho_i/rho0 = gamma(e). That there is
+// one, density or the sum itself says. The gradient is exact for a pressure that is linear in space, whatever
+// the packing and however few particles lie on one side: water at rest stays at rest. It does not conserve
+// momentum to the last digit; where too few neighbours make it ill-conditioned, in spray, the conserving sum
+// of pairs stands in for it. The matrix is symmetric and positive definite: conjugate gradients,
+// preconditioned by the diagonal, from the pressure of the step before, until a fifth of what that leaves is
+// left, or less than the tolerance.
 //
-// Pressure and velocity have the same places, so there is noise whose divergence reads zero (Rider 1995). What
-// moves positions alone feeds it, and water at rest boils. So a step takes out
+// Pressure and velocity have the same places, so there is noise whose divergence reads zero [Rid]. What moves
+// positions alone feeds it, and water at rest boils. So a step takes out a viscosity that vanishes with the
+// spacing, whatever the time step:
 //
-//   v_i -= nu dt sum_j F_ij (v*_i - v*_j),   nu = 0.1 spacing^2 / T
-//
-// a viscosity that vanishes with the spacing and does not depend on the time step. Its pairs are antisymmetric.
+//   v_i -= nu dt sum_j F_ij (v*_i - v*_j),   nu = 0.2 spacing^2 / T
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -74,22 +74,16 @@ struct PotentialSums {
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
-/// Two over the time in which a particle falls by its spacing (1/s).
-inline float fallRate(const StepState& state) {
-  return 2 * std::sqrt(0.5F * state.gravity.norm() / state.spacing);
-}
-
-/// One over the time in which less dense fluid comes together (1/s).
-inline float roomRate(const StepState& state) {
-  const float once = 1 / state.timeStep, falls = fallRate(state);
-  return falls > 0 ? std::min(once, falls) : once;
+/// dt / T, T being half the time in which a particle falls by its spacing, and not less than a step.
+inline float fallen(const StepState& state) {
+  return std::min(state.timeStep * 2 * std::sqrt(0.5F * state.gravity.norm() / state.spacing), 1.0F);
 }
 
 /// What a step takes of the differences of velocities between neighbours, over F h^2 (1).
 inline float filterOf(const StepState& state) {
   constexpr float kOfFall = 0.2F;
   const float spacings = state.spacing / state.supportRadius;
-  return kOfFall * std::min(state.timeStep * fallRate(state), 1.0F) * spacings * spacings;
+  return kOfFall * fallen(state) * spacings * spacings;
 }
 
 /// Density, moment, divergence and diagonal, without the surface's share, what the potential of the step
@@ -104,7 +98,8 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   const Float4* const velocities = state.previous.data();
   ProjectionBuffers& out = state.projection;
   const float slope = state.lattice.massRatio * Shape::kSlope;
-  const float support = state.supportRadius, toRoom = support * support * roomRate(state);
+  const float support = state.supportRadius,
+              toRoom = support * support / state.timeStep * (fallen(state) > 0 ? fallen(state) : 1);
   const PairVector toFactor = hn::Set(d, -2 * slope);
   const bool added = state.addsWallDensity();
   state.neighbours.makePairValues(begin / kChunk);
@@ -253,8 +248,8 @@ PotentialSums stepProjectionOfRange(StepState& state, float unit, float keep, fl
   return {sumLanes(square), sumLanes(magnitude)};
 }
 
-/// v -= grad phi, phi being what the w of state.paired hold, and the noise. state.previous holds the velocities
-/// before. The length of grad phi becomes the image.
+/// v -= grad phi, phi being what the w of state.paired hold, and the noise. state.previous holds the
+/// velocities before. The length of grad phi becomes the image.
 void pushProjectionOfRange(StepState& state, std::size_t begin, std::size_t end) {
   const Pairs d;
   const PairScale scale(state);
@@ -437,6 +432,13 @@ void prepareProjection(StepState& state) {
   });
 }
 
+/// How much of a particle is at the surface, 0 to 1: by its density, or by what is missing on one side, which
+/// is 1.1 in the first layer of water at rest, 0.1 below it and 0.6 in one of twenty of a disordered packing.
+/// Fluid whose first layer a flow presses together would else have no surface, and its pressure no bound.
+float outsideOf(float density, float missing) {
+  return std::max(1 - ProjectionBuffers::inside(density), std::clamp((missing - 0.6F) / 0.4F, 0.0F, 1.0F));
+}
+
 /// The equation, and what the potential of the step before leaves of it.
 PotentialSums measureProjection(StepState& state) {
   const auto ofRange = HWY_DYNAMIC_DISPATCH(measureProjectionOfRange);
@@ -455,7 +457,7 @@ PotentialSums measureProjection(StepState& state) {
           // A lone particle has no neighbours to make a diagonal of, and no pressure.
           constexpr float kLeast = 1e-6F;
           diagonal = std::max(diagonal, kLeast);
-          if (const float outside = 1 - ProjectionBuffers::inside(state.density[i]); outside > 0)
+          if (const float outside = outsideOf(state.density[i], b.missing[i]); outside > 0)
             diagonal += b.missing[i] * outside * 2 / std::max(distance(state.density[i]), nearest);
           residual -= diagonal * b.potential[i] + b.image[i];
           // Particles without pressure that do not come together have no part in the solve.

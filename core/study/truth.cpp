@@ -21,8 +21,8 @@ std::optional<double> TruthAnswer::error() const {
 
 TruthSetting projected(TruthSetting setting) {
   setting.label += ", projection";
-  for (const char* override : {"/solver/velocity_step=projection", "/solver/tolerance=0.003",
-                               "/effects/viscosity/xsph=0", "/effects/viscosity/affine_xsph=0.3"})
+  for (const char* override :
+       {"/solver/velocity_step=projection", "/solver/tolerance=0.003", "/effects/viscosity/xsph=0"})
     setting.overrides.emplace_back(override);
   return setting;
 }
