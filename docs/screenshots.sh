@@ -61,6 +61,13 @@ screenshotsOfSolvers() {
   cp out/screenshots/solvers/dam_break/cost_accuracy.png screenshots/cost_accuracy_solvers.png
 }
 
+screenshotsOfWaves() {
+  say "What accuracy costs: where velocities come from"
+  studyOfWaves out/screenshots/waves
+  cp out/screenshots/waves/wave_kept.png screenshots/cost_wave_kept.png
+  cp out/screenshots/waves/cost_accuracy.png screenshots/cost_accuracy_waves.png
+}
+
 screenshotsOfConvergence() {
   say "How errors follow spacing, iterations and time step"
   convergenceStudies out/screenshots/convergence
@@ -199,13 +206,14 @@ command_screenshots() {
     convergence) screenshotsOfConvergence && return ;;
     rest) screenshotsOfRest && return ;;
     solvers) screenshotsOfSolvers && return ;;
+    waves) screenshotsOfWaves && return ;;
     slim) screenshotsOfSlim && return ;;
     film) screenshotsOfFilm && return ;;
     thumbnails) screenshotsOfThumbnails && return ;;
     window) screenshotsOfWindow && return ;;
     raytraced) screenshotsRayTraced "${@:2}" && return ;;
     '') ;;
-    *) fail "expected gamma, walls, convergence, rest, solvers, slim, film, thumbnails, window, raytraced or nothing, found $1" ;;
+    *) fail "expected gamma, walls, convergence, rest, solvers, waves, slim, film, thumbnails, window, raytraced or nothing, found $1" ;;
   esac
   say "Figure 4 of the paper: cut at the middle plane, four times"
   compareSheet dam_break_compare dam_break --times 0,0.4,0.8,4 --size 480x270
@@ -217,6 +225,7 @@ command_screenshots() {
   screenshotsOfConvergence
   screenshotsOfRest
   screenshotsOfSolvers
+  screenshotsOfWaves
   screenshotsOfSlim
   screenshotsOfFilm
   screenshotsOfThumbnails

@@ -78,7 +78,7 @@ constexpr std::array<KeyCost, 9> kCosts{{
     {"/solver/max_iterations", "a step takes up to the time of so many; fewer leave more density error"},
     {"/solver/tolerance", "a smaller one takes more iterations a step, up to the most there may be"},
     {"/solver/method", "see \"What if\", for another kind of step takes another time"},
-    {"/solver/velocity_step", "projection takes 1.4 to 1.8 times the time of a step"},
+    {"/solver/velocity_step", "positions takes two thirds of the time of a step"},
     {"/solver/position_step", "as many iterations as it then takes to come within the tolerance"},
     {"/solver/time_step", "half of it takes twice as many steps for a second, each with fewer iterations"},
     {"/boundary/handling", "that of γ or of particles at walls: \"Performance\" has it by stage"},

@@ -140,6 +140,13 @@ class BasicFieldVisitor {
     return true;
   }
 
+  /// Whether the object that is read has the key, or what a JSON pointer leads to: for defaults that depend
+  /// on what else is written. False for all but readers.
+  virtual bool given(std::string_view key) const {
+    static_cast<void>(key);
+    return false;
+  }
+
   /// A choice held as an enum whose values count from 0 in the order of `names`.
   template <class Enum>
   requires std::is_enum_v<Enum>

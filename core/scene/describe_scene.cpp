@@ -218,9 +218,57 @@ void warnOfPbfsOwn(Visitor& visitor, const SolverParameters& solver) {
   if (solver.tolerance > own.tolerance) warn("tolerance", solver.tolerance, own.tolerance);
 }
 
+/// Where velocities come from, the kernel and the form of a displacement. What is not written follows from
+/// what is: the paper's own step, and kernels whose own gradient does not move particles, go with velocities
+/// from positions.
+template <class Visitor>
+void describeVelocities(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
+  visitor.choice("kernel", solver.kernel, kKernelNames,
+                 {"",
+                  "Kernel of the density; the pair gradient is Spiky's for poly6 and spiky, its own for the "
+                  "others. Left "
+                  "out: wendland_c2, and poly6 where velocities come from positions."});
+  visitor.choice(
+      "position_step", solver.positionStep, kPositionStepNames,
+      {"",
+       "How lambda becomes a displacement: by the full gradient of the constraint, by the pairs and "
+       "the wall alone, or by Eq. 10 of the paper as printed."});
+  [[maybe_unused]] const auto take = [&](VelocityStep from) {
+    if constexpr (Visitor::kChanges) {
+      const KernelType kernel = solver.kernel;
+      solver.takeVelocities(from);
+      if (visitor.given("kernel")) solver.kernel = kernel;
+    }
+  };
+  const bool isPbf = solver.method == SolverMethod::pbf;
+  if (isPbf && (!servesPressure(solver.kernel) || solver.positionStep != PositionStep::gradient))
+    take(VelocityStep::positions);
+  [[maybe_unused]] const VelocityStep usual = solver.velocityStep;
+  visitor.choice(
+      "velocity_step", solver.velocityStep, kVelocityStepNames,
+      {"",
+       "Of pbf, where velocities come from: from a pressure that makes them free of divergence, while the "
+       "constraint corrects positions alone, so that waves keep their height, or from the way that the "
+       "constraint has moved particles, as the paper has it. Left out: projection, and positions with the "
+       "kernels poly6 and spiky, the other position steps and surface tension. Defaults go with it: kernel "
+       "wendland_c2, support_ratio 2.25, tolerance 0.003 and min_iterations 1, or poly6, 2, 0.01 and 2."});
+  if (isPbf && solver.velocityStep != usual) take(solver.velocityStep);
+  if (!isPbf && visitor.given("velocity_step"))
+    visitor.warning("velocity_step", "belongs to the method \"pbf\" and is not used");
+  const std::string_view chosenBy = isPbf ? "velocity_step" : "method";
+  if (solver.takesPressure() && visitor.valid({"kernel", chosenBy}) && !servesPressure(solver.kernel))
+    visitor.fault(
+        chosenBy,
+        "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
+        "\"cubic_spline\", for \"" +
+            std::string(isPbf ? "projection" : kSolverMethodNames[static_cast<std::size_t>(solver.method)]) +
+            "\"; found \"" + std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
+}
+
 template <class Visitor>
 void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver) {
   describeMethod(visitor, solver);
+  describeVelocities(visitor, solver);
   visitor.number("time_step", solver.timeStep, Range::closed(1e-9, 1),
                  {"s", "Time from one frame to the next."});
   visitor.integer("substeps", solver.substeps, Range::closed(1, 1000),
@@ -233,18 +281,6 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
                   {"1", "Iterations of a substep, at least."});
   visitor.integer("max_iterations", solver.maxIterations, Range::closed(1, 1000),
                   {"1", "Iterations of a substep, at most."});
-  visitor.choice(
-      "velocity_step", solver.velocityStep, kVelocityStepNames,
-      {"",
-       "Where velocities come from: from the way that the constraint has moved particles (PBF), or from a "
-       "pressure that makes them free of divergence, while the constraint corrects positions alone: waves "
-       "keep their height, see docs/method.md. With it the defaults are kernel wendland_c2, support_ratio "
-       "2.25 and tolerance 0.003."});
-  if constexpr (Visitor::kChanges)
-    if (solver.method == SolverMethod::pbf && solver.takesPressure())
-      solver.takeVelocities(VelocityStep::projection);
-  if (solver.method != SolverMethod::pbf && solver.velocityStep != SolverParameters().velocityStep)
-    visitor.warning("velocity_step", "belongs to the method \"pbf\" and is not used");
   if (visitor.valid({"min_iterations", "max_iterations"}) && solver.minIterations > solver.maxIterations)
     visitor.fault("min_iterations", "expected at most max_iterations, which is " +
                                         std::to_string(solver.maxIterations) + ", found " +
@@ -255,31 +291,12 @@ void describeSolver(Visitor& visitor, Visited<Visitor, SolverParameters>& solver
   visitor.number(
       "cfm_epsilon", solver.cfmEpsilon, Range::closed(1e-9, 1e6),
       {"1", "Softening of lambda, over the resting lattice's sum of squared constraint gradients."});
-  visitor.choice(
-      "kernel", solver.kernel, kKernelNames,
-      {"",
-       "Kernel of the density; the pair gradient is Spiky's for poly6 and spiky, its own for the others."});
   visitor.number("support_ratio", solver.supportRatio, Range::closed(1.2, 4),
                  {"1", "Support radius over particle spacing."});
-  visitor.choice(
-      "position_step", solver.positionStep, kPositionStepNames,
-      {"",
-       "How lambda becomes a displacement: by the full gradient of the constraint, by the pairs and "
-       "the wall alone, or by Eq. 10 of the paper as printed."});
   visitor.choice("acceleration", solver.acceleration, kAccelerationNames,
                  {"",
                   "How the iterations are made to converge in fewer: the Chebyshev semi-iteration, or the "
                   "paper's plain iteration."});
-  const bool isPbf = solver.method == SolverMethod::pbf;
-  const std::string_view chosenBy = isPbf ? "velocity_step" : "method";
-  if (solver.takesPressure() && visitor.valid({"kernel", chosenBy}) &&
-      solver.kernel != KernelType::cubicSpline && solver.kernel != KernelType::wendlandC2)
-    visitor.fault(
-        chosenBy,
-        "expected a kernel whose own gradient moves particles, \"kernel\": \"wendland_c2\" or "
-        "\"cubic_spline\", for \"" +
-            std::string(isPbf ? "projection" : kSolverMethodNames[static_cast<std::size_t>(solver.method)]) +
-            "\"; found \"" + std::string(kKernelNames[static_cast<std::size_t>(solver.kernel)]) + "\"");
   visitor.number(
       "divergence_tolerance", solver.divergenceTolerance, Range::halfOpen(0, 1),
       {"1", "Of a projection and of dfsph: mean divergence times time step that ends its iterations."});
@@ -414,6 +431,8 @@ bool fieldsOf(Visitor& visitor, Visited<Visitor, Scene>& scene) {
   visitor.object("boundary", {"", "The walls and how the density is corrected at them."},
                  [&](auto& fields) { describeBoundary(fields, scene); });
   describeGauges(visitor, scene);
+  if constexpr (Visitor::kChanges)
+    if (visitor.given("/effects/surface_tension")) scene.solver.takeVelocities(VelocityStep::positions);
   visitor.object("solver", {"", "The constraint solver."},
                  [&](auto& fields) { describeSolver(fields, scene.solver); });
   visitor.object("effects",

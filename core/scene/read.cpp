@@ -227,6 +227,11 @@ class JsonReader final : public FieldVisitor {
                         [&](std::string_view key) { return faulty_.contains(key); });
   }
 
+  bool given(std::string_view key) const override {
+    return key.starts_with('/') ? object_.contains(Json::json_pointer(std::string(key)))
+                                : object_.contains(key);
+  }
+
  private:
   JsonReader(const Json& object, const std::string& pointer, const Vec3d& origin, FaultList& faults)
       : object_(object), pointer_(pointer), origin_(origin), faults_(faults) {}

@@ -37,6 +37,11 @@ enum class VelocityStep {
 };
 inline constexpr std::array<std::string_view, 2> kVelocityStepNames{"positions", "projection"};
 
+/// Whether a pressure can take the kernel: one that serves density and forces alike.
+inline bool servesPressure(KernelType kernel) {
+  return kernel == KernelType::cubicSpline || kernel == KernelType::wendlandC2;
+}
+
 /// How the iterations are made to converge in fewer.
 enum class Acceleration { chebyshev, none };
 inline constexpr std::array<std::string_view, 2> kAccelerationNames{"chebyshev", "none"};
@@ -47,16 +52,16 @@ struct SolverParameters {
   double timeStep = 0.005;  ///< a frame's step (unit: s, range: (0, 1])
   int substeps = 1;         ///< parts that a frame has at least (range: [1, 1000])
   double cfl = 0.4;  ///< support radii that the fastest particle may move in a substep; 0: no limit (unit: 1)
-  int minIterations = 2;    ///< (range: [1, 1000])
-  int maxIterations = 20;   ///< (range: [1, 1000], at least minIterations)
-  double tolerance = 0.01;  ///< largest mean density error that ends the iterations (unit: 1, range: [0, 1))
+  int minIterations = 1;     ///< (range: [1, 1000])
+  int maxIterations = 20;    ///< (range: [1, 1000], at least minIterations)
+  double tolerance = 0.003;  ///< largest mean density error that ends the iterations (unit: 1, range: [0, 1))
   double cfmEpsilon = 1;  ///< Eq. 11's epsilon over the resting lattice's sum of squared gradients (unit: 1)
-  double supportRatio = 2;    ///< support radius over particle spacing (unit: 1, range: [1.2, 4])
-  double restDensity = 1000;  ///< (unit: kg/m^3)
-  KernelType kernel = KernelType::poly6;
+  double supportRatio = 2.25;  ///< support radius over particle spacing (unit: 1, range: [1.2, 4])
+  double restDensity = 1000;   ///< (unit: kg/m^3)
+  KernelType kernel = KernelType::wendlandC2;
   PositionStep positionStep = PositionStep::gradient;
   Acceleration acceleration = Acceleration::chebyshev;
-  VelocityStep velocityStep = VelocityStep::positions;
+  VelocityStep velocityStep = VelocityStep::projection;
   /// Mean divergence, times the time step, that ends a projection (unit: 1, range: [0, 1))
   double divergenceTolerance = 2e-5;
   int maxPressureIterations = 50;  ///< of a projection (range: [1, 1000])
@@ -71,30 +76,30 @@ struct SolverParameters {
     return method == SolverMethod::dfsph || (method == SolverMethod::pbf && takesPressure());
   }
 
-  /// Takes a method, and what goes with it: for all but PBF a kernel that serves density and forces
-  /// alike, and the least iterations and the errors that the publications ask for.
+  /// Takes a method, and what goes with it: a kernel that serves density and forces alike, and the least
+  /// iterations and the errors that the publications ask for.
   void takeMethod(SolverMethod with) {
-    const SolverParameters usual;
-    takeVelocities(usual.velocityStep);
+    takeVelocities(VelocityStep::projection);
     method = with;
-    minIterations = usual.minIterations, maxIterations = usual.maxIterations;
-    divergenceTolerance = usual.divergenceTolerance;
+    const SolverParameters usual;
+    maxIterations = usual.maxIterations, divergenceTolerance = usual.divergenceTolerance;
     if (with == SolverMethod::pbf) return;
-    kernel = KernelType::wendlandC2, supportRatio = 2.25, tolerance = 0.01;
+    minIterations = 2, tolerance = 0.01;
     if (with == SolverMethod::pcisph) minIterations = 3, maxIterations = 50;
     if (with == SolverMethod::dfsph) maxIterations = 50, tolerance = 0.001, divergenceTolerance = 0.001;
   }
 
-  /// Takes velocities from there, and the kernel, the support ratio and the tolerance that go with it: for a
-  /// projection a kernel that serves density and forces alike, and a tolerance that costs about an iteration
-  /// a step, for what the constraint corrects does not become velocity.
+  /// Takes velocities from there, and what goes with them. For a projection: a kernel that serves density and
+  /// forces alike, and a tolerance that one or two iterations a step keep. From positions: PBF's own kernel,
+  /// and a tolerance that leaves noise, for all that the constraint corrects becomes velocity.
   void takeVelocities(VelocityStep from) {
     const SolverParameters usual;
     const bool projects = from == VelocityStep::projection;
     velocityStep = from;
-    kernel = projects ? KernelType::wendlandC2 : usual.kernel;
-    supportRatio = projects ? 2.25 : usual.supportRatio;
-    tolerance = projects ? 0.003 : usual.tolerance;
+    kernel = projects ? usual.kernel : KernelType::poly6;
+    supportRatio = projects ? usual.supportRatio : 2;
+    tolerance = projects ? usual.tolerance : 0.01;
+    minIterations = projects ? usual.minIterations : 2;
   }
 };
 

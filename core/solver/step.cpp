@@ -190,7 +190,7 @@ void listNeighbours(StepState& state) {
 /// Iterates on the predicted positions until the mean density error is within the tolerance or the iterations
 /// are used up. errors[k] is the error after k iterations, so the last one is that of the positions that
 /// stay. `watch`, unless it is empty, is called after every stage that may change what the step goes on with.
-void solveConstraint(StepState& state, EffectPipeline& effects, int minIterations, const Watch& watch) {
+void solveConstraint(StepState& state, EffectPipeline& effects, const Watch& watch) {
   const SolverParameters& parameters = state.parameters;
   const auto watched = [&](std::string_view stage) {
     if (watch) watch(stage);
@@ -202,7 +202,8 @@ void solveConstraint(StepState& state, EffectPipeline& effects, int minIteration
   while (true) {
     state.times.time("lambda", [&] { state.errors.push_back(stages::computeLambda(state)); });
     watched("lambda");
-    if (state.iterations >= minIterations && state.errors.back().mean <= parameters.tolerance) break;
+    if (state.iterations >= parameters.minIterations && state.errors.back().mean <= parameters.tolerance)
+      break;
     if (state.iterations >= parameters.maxIterations) break;
     const bool overRelaxed = parameters.acceleration == Acceleration::chebyshev;
     const float weight = overRelaxed ? chebyshev.next(state.errors, parameters.tolerance) : 1;
@@ -230,7 +231,7 @@ void solvePrediction(StepState& state, EffectPipeline& effects, const Watch& wat
   effects.changePrediction(state, watch);
   state.times.time("gamma", [&] { stages::evaluateGamma(state); });
   if (watch) watch("gamma");
-  solveConstraint(state, effects, state.parameters.minIterations, watch);
+  solveConstraint(state, effects, watch);
 }
 
 /// The velocities of the step by a pressure, and the positions that they lead to.
@@ -280,8 +281,7 @@ void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& wat
     // What moves positions alone gives no speed, and so is no work.
     const WallWork work = state.wallWork;
     const double effectWork = state.effectWork;
-    // One iteration at least: where errors gather until they pass the tolerance, water at rest is never still.
-    solveConstraint(state, effects, 1, watch);
+    solveConstraint(state, effects, watch);
     state.times.time("velocity", [&] { stages::projectAll(state); });
     state.wallWork = work, state.effectWork = effectWork;
   } else {

@@ -55,8 +55,9 @@ struct TruthSetting {
   std::vector<std::string> overrides;  ///< as --set takes them
 };
 
-/// The setting with velocities by projection and the kernel that this asks for; "projection" in its label.
-TruthSetting projected(TruthSetting setting);
+/// The setting with velocities from positions, what goes with them, and XSPH 0.05 against their noise; "from
+/// positions" in its label.
+TruthSetting fromPositions(TruthSetting setting);
 
 struct TruthCase {
   std::string name;   ///< of the scene in scenes/truth, without .json

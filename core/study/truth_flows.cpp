@@ -197,7 +197,7 @@ std::vector<TruthCase> truthFlows() {
       {"piston", "Volume is kept: h = h₀L/(L - Vt)", {{"2 cm", {}}}, piston},
       {"vortex",
        "Taylor and Green 1937, inviscid: the vortex turns for ever",
-       {{"2 cm", {}}, {"2 cm, no XSPH", {"/effects={}"}}},
+       {{"2 cm", {}}},
        inviscidVortex},
       {"viscous_vortex", "Taylor and Green 1937: exp(-2νk²t)", {{"2 cm", {}}}, viscousVortex},
       {"bucket", "Newton's bucket: h = ω²r²/2g over the middle", {{"2 cm", {}}}, bucket},

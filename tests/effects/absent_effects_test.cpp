@@ -34,7 +34,8 @@ TEST(AbsentEffects, AreAbsent) {
     const std::string with = probe(MIGIWA_PROBE, scene, R"({"viscosity": null})");
     const std::string without = probe(MIGIWA_BARE_PROBE, scene, R"({"viscosity": null})");
     EXPECT_EQ(with, without) << scene;
-    EXPECT_NE(with.find(": predict neighbours gamma lambda position projection gamma_refresh velocity check"),
+    EXPECT_NE(with.find(": neighbours predict gamma pressure move lambda position projection gamma_refresh "
+                        "velocity check"),
               std::string::npos)
         << with;
     EXPECT_NE(with, probe(MIGIWA_PROBE, scene, R"({"viscosity": {}})")) << "a probe that sees nothing";

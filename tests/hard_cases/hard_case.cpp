@@ -52,8 +52,9 @@ class RestWatch {
 
 }  // namespace
 
-Scene sceneOf(const HardCase& hardCase, const std::string& method) {
+Scene sceneOf(const HardCase& hardCase, const std::string& method, VelocityStep velocities) {
   std::vector<Override> overrides;
+  if (velocities == VelocityStep::positions) overrides.push_back({"/solver/velocity_step", "positions"});
   if (!method.empty()) overrides.push_back({"/boundary/gamma/method", method});
   Scene scene =
       readScene(std::string(MIGIWA_SOURCE_DIR "/scenes/hard/") + hardCase.scene + ".json", overrides);

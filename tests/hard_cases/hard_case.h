@@ -67,7 +67,8 @@ struct HardCase {
 std::vector<HardCase> hardCases();
 
 /// With the copies, and another gamma method or none if `method` is empty.
-Scene sceneOf(const HardCase& hardCase, const std::string& method = {});
+Scene sceneOf(const HardCase& hardCase, const std::string& method = {},
+              VelocityStep velocities = VelocityStep::positions);
 
 /// Runs a scene for a time and watches every frame.
 Observed observe(const Scene& scene, double until, int threads = 1, Guards guards = Guards::on);

@@ -65,10 +65,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryMethod, ::testing::ValuesIn(casesOfEveryMe
 
 class ByProjection : public ::testing::TestWithParam<HardCase> {};
 
-// With velocities by projection, and what goes with them. Which guards have to act is not stated.
+// With velocities by projection, as the scene is run by default. Which guards have to act is not stated.
 TEST_P(ByProjection, KeepsWhatTheCaseStates) {
-  Scene scene = sceneOf(GetParam());
-  scene.solver.takeVelocities(VelocityStep::projection);
+  const Scene scene = sceneOf(GetParam(), {}, VelocityStep::projection);
   Observed seen = observe(scene, GetParam().until, 1);
   seen.guards = GetParam().guards;
   for (const std::string& violation : violations(GetParam(), seen)) ADD_FAILURE() << violation;

@@ -25,6 +25,7 @@ class Blocks {
     state_.parameters.kernel = KernelType::wendlandC2;
     state_.parameters.acceleration = Acceleration::none;
     state_.spacing = kSpacing;
+    state_.parameters.takeVelocities(VelocityStep::positions);
     state_.supportRadius = static_cast<float>(state_.parameters.supportRatio) * kSpacing;
     state_.lattice = restingLattice(state_.parameters.kernel, state_.parameters.supportRatio);
     state_.timeStep = kStep;

@@ -21,6 +21,7 @@ class StepAtFloor {
  public:
   StepAtFloor() : floor_({std::make_shared<Plane>(Vec3d::Zero(), Vec3d::UnitY())}), state_(pool_, floor_) {
     state_.spacing = kSpacing;
+    state_.parameters.takeVelocities(VelocityStep::positions);
     state_.supportRadius = static_cast<float>(state_.parameters.supportRatio) * kSpacing;
     state_.lattice = restingLattice(state_.parameters.kernel, state_.parameters.supportRatio);
     state_.timeStep = kStep;

@@ -130,6 +130,7 @@ TEST(ThinWall, NeighboursAreThoseThatBlocksDoNotHide) {
   const Boundary boundary(surfaces);
   ThreadPool pool(2);
   StepState state(pool, boundary);
+  state.parameters.takeVelocities(VelocityStep::positions);
   state.spacing = 0.05F, state.supportRadius = 0.1F, state.timeStep = 0.005F;
   state.lattice = restingLattice(state.parameters.kernel, state.parameters.supportRatio);
   for (std::uint32_t id = 0; id < 700; ++id) {

@@ -23,6 +23,7 @@ class DenseTank {
     state_ = std::make_unique<StepState>(pool_, boundary_);
     StepState& state = *state_;
     state.spacing = kSpacing;
+    state.parameters.takeVelocities(VelocityStep::positions);
     state.supportRadius = 2 * kSpacing;
     state.lattice = restingLattice(state.parameters.kernel, state.parameters.supportRatio);
     state.gravity = Vec3f(0, -9.81F, 0);

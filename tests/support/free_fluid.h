@@ -35,6 +35,7 @@ class FreeFluid {
   /// Particles 0.05 m apart.
   FreeFluid(const std::vector<Vec3f>& places, const std::function<Vec3f(const Vec3f&)>& velocityAt)
       : pool_(1), state_(pool_, boundary_) {
+    state_.parameters.takeVelocities(VelocityStep::positions);
     state_.spacing = 0.05F;
     state_.supportRadius = 2 * state_.spacing;
     state_.lattice = restingLattice(state_.parameters.kernel, state_.parameters.supportRatio);

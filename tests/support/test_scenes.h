@@ -12,10 +12,12 @@ namespace migiwa::testing {
 
 inline constexpr double kSpacing = 0.05;
 
-/// An empty scene without walls and gravity, at the spacing of the shipped scenes.
+/// An empty scene without walls and gravity, at the spacing of the shipped scenes. Velocities are from
+/// positions: what a test of the constraint sees is then the constraint's doing alone.
 inline Scene emptyScene() {
   Scene scene;
   scene.file = "test.json";
+  scene.solver.takeVelocities(VelocityStep::positions);
   scene.particleSpacing = kSpacing;
   scene.gravity = Vec3d::Zero();
   return scene;
