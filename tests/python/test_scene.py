@@ -38,7 +38,7 @@ class Scenes(unittest.TestCase):
         built = migiwa.Scene(**{key: value for key, value in keys.items() if key != "format"})
         self.assertEqual(built.to_dict(), read.to_dict())
         self.assertEqual((read.duration, read.particle_spacing), (keys["duration"], keys["particle_spacing"]))
-        self.assertAlmostEqual(read.support_radius, 2 * read.particle_spacing)
+        self.assertAlmostEqual(read.support_radius, 2.25 * read.particle_spacing)
 
     def test_arrays_and_numbers_of_numpy_are_numbers(self):
         plain = migiwa.Scene(TANK)

@@ -182,7 +182,7 @@ TEST_F(Inspecting, AClickPicksAndShowsWhatTheRunKnows) {
   std::size_t near = 0;
   for (const Float4& other : frame_.positions) {
     const double distance = (other.xyz() - picked.position).cast<double>().norm();
-    near += distance > 0 && distance < 0.1 ? 1 : 0;
+    near += distance > 0 && distance < tank().supportRadius() ? 1 : 0;
   }
   EXPECT_EQ(picked.around.size(), near);
   const std::string text = shownText();
@@ -254,8 +254,8 @@ TEST_F(Inspecting, GammaIsThatOfTheCommandAndEveryMethodIsNearTheReference) {
   EXPECT_NEAR(*walls.methods.front().gamma, std::stod(field), 1e-7);
   for (const MethodGamma& method : walls.methods) {
     ASSERT_TRUE(method.gamma) << method.name << ": " << method.fault;
-    // The paper's approximations are off by some hundredths; [FM] Figure 3.
-    EXPECT_NEAR(*method.gamma, walls.reference, 0.1) << method.name;
+    // The paper's approximations are off by some hundredths with Poly6 [FM, Figure 3], a quarter more here.
+    EXPECT_NEAR(*method.gamma, walls.reference, 0.13) << method.name;
   }
   for (int k = 0; k < 2; ++k) frame(InputState{});  // the window grows with what it holds a frame later
   for (const std::string_view row : {"reference", "monte_carlo"})

@@ -51,7 +51,7 @@ TEST(SceneWriter, EveryShapeAndChoiceComesBackTheSame) {
 TEST(SceneWriter, WritesDefaultsAndTheChosenCamera) {
   const std::string text = writeScene(parseScene(R"({ "format": 1 })", "short.json"));
   for (const char* line :
-       {"\"format\": 1", "\"name\": \"short\"", "\"tolerance\": 0.01", "\"handling\": \"gamma\"",
+       {"\"format\": 1", "\"name\": \"short\"", "\"tolerance\": 0.003", "\"handling\": \"gamma\"",
         "\"gravity\": [0.0, -9.81, 0.0]", "\"method\": \"auto\"", "\"eye\": ["})
     EXPECT_NE(text.find(line), std::string::npos) << line << " is not in\n" << text;
   EXPECT_EQ(text.find("$schema"), std::string::npos);

@@ -37,7 +37,7 @@ TEST(Schema, ReferenceHasEveryKindOfPlace) {
         "| `gravity` | 3 numbers | m/s^2 | [0, -9.81, 0] |", "### `/solver`",
         "| `camera/eye` | 3 numbers | m | required |", "`/fluid/N` with `\"shape\": \"box\"`",
         "| `viscosity/xsph` | number in [0, 1] | 1 | 0.05 |",
-        "| `tolerance` | number in [0, 1) | 1 | 0.01 |"})
+        "| `tolerance` | number in [0, 1) | 1 | 0.003 |"})
     EXPECT_NE(text.find(row), std::string::npos) << row << " is not in\n" << text;
 }
 
