@@ -62,10 +62,9 @@
 #define MIGIWA_PROJECTION_TYPES
 namespace migiwa {
 
-/// Of what is left of the equation, in the unit of the solve.
+/// Of what is left of the equation, in the unit of the solve; the squares over the diagonal.
 struct PotentialSums {
-  double square = 0;  ///< over the diagonal
-  double magnitude = 0;
+  double square = 0, magnitude = 0;
 };
 
 }  // namespace migiwa
