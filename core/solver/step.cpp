@@ -280,7 +280,8 @@ void predictAndSolve(StepState& state, EffectPipeline& effects, const Watch& wat
     // What moves positions alone gives no speed, and so is no work.
     const WallWork work = state.wallWork;
     const double effectWork = state.effectWork;
-    // One iteration at least: where errors gather until they pass the tolerance, water at rest is never still.
+    // One iteration at least: where errors gather until they pass the tolerance, water at rest is never
+    // still.
     solveConstraint(state, effects, 1, watch);
     state.times.time("velocity", [&] { stages::projectAll(state); });
     state.wallWork = work, state.effectWork = effectWork;
