@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSurelyBounces = 4;
 /// Starts of a stretch that are tried where its ends disagree.
-constexpr int kStarts = 4;
+constexpr int kStarts = 6;
 
 struct Ray {
   Vec3f origin, direction;
@@ -76,7 +76,10 @@ Ray depart(const Departure& from, const Stage& stage, int start) {
     ray = passed ? Ray{event.point, from.arrival.direction, from.arrival.place}
                  : throughInterface(from, beyond);
   }
-  constexpr float kOffsets[kStarts] = {1, 1, 30, 30};
+  // The ray may have come from the other side of the water's surface than it seemed: where that ends at
+  // glass, which throws light back above and below it, or where it passes through itself.
+  if (start >= 4 && ray.place.medium != Medium::glass) ray.place.medium = otherFluid(ray.place.medium);
+  constexpr float kOffsets[kStarts] = {1, 1, 30, 30, 1, 30};
   const float off = (event.meshed || start > 0 ? kOffsets[start] : 0.0F) * stage.offset();
   ray.origin += (ray.direction.dot(event.normal) > 0 ? off : -off) * event.normal;
   return ray;

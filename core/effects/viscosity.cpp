@@ -326,7 +326,7 @@ class Viscosity final : public EffectOf<Viscosity> {
         "affine_xsph", self.affine_, Range::closed(0, 1),
         {"1",
          "The same of what the neighbours' affine motion leaves of the difference: it damps noise and "
-         "spares rotation, shear and waves. 0.3 goes with velocities by projection, xsph then being 0."});
+         "spares rotation, shear and waves."});
     visitor.number(
         "kinematic", self.kinematic_, Range::closed(0, 1e3),
         {"m^2/s", "Kinematic viscosity: 1e-6 is water, 1e-3 oil, 1e-2 honey. Set xsph to 0 for this alone."});

@@ -108,9 +108,9 @@ void describeDomain(Visitor& visitor, Visited<Visitor, Domain>& domain) {
       &domain.given);
 }
 
-/// A source of which nothing would be there after a step.
+/// A source of which nothing would be there after a step, a drain that nothing reaches.
 void warnOfFluidOutside(FieldVisitor& visitor, const Scene& scene) {
-  if (!scene.domain.given || !visitor.valid({"bounds", "fluid", "emitters"})) return;
+  if (!scene.domain.given || !visitor.valid({"bounds", "fluid", "emitters", "drains"})) return;
   const Bounds domain = scene.domainBounds();
   const auto outside = [&](const Bounds& own) {
     return !own.empty() &&
@@ -123,6 +123,9 @@ void warnOfFluidOutside(FieldVisitor& visitor, const Scene& scene) {
     if (outside(scene.emitters[k].bounds()))
       visitor.warning("bounds",
                       "emitters/" + std::to_string(k) + " lies outside: what it gives leaves at once");
+  for (std::size_t k = 0; k < scene.drains.size(); ++k)
+    if (outside(DrainRegion(scene.drains[k]).bounds()))
+      visitor.warning("bounds", "drains/" + std::to_string(k) + " lies outside and never takes anything");
 }
 
 template <class Visitor>

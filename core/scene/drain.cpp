@@ -68,10 +68,18 @@ DrainRegion::DrainRegion(const Drain& drain)
       half_(sphere_ ? Vec3d(Vec3d::Constant(drain.radius)) : Vec3d(0.5 * (drain.max - drain.min))),
       axes_(sphere_ ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : drain.rotation.matrix()) {}
 
-bool DrainRegion::contains(const Vec3d& p) const {
+bool DrainRegion::within(const Vec3d& p, double distance) const {
   const Vec3d offset = p - center_;
-  if (sphere_) return offset.squaredNorm() <= half_.x() * half_.x();
-  return ((axes_.transpose() * offset).array().abs() <= half_.array()).all();
+  const Vec3d reach = half_.array() + distance;
+  if (sphere_) return offset.squaredNorm() <= reach.x() * reach.x();
+  return ((axes_.transpose() * offset).array().abs() <= reach.array()).all();
+}
+
+Bounds DrainRegion::bounds() const {
+  const Vec3d reach = axes_.cwiseAbs() * half_;
+  Bounds bounds;
+  bounds.min = center_ - reach, bounds.max = center_ + reach;
+  return bounds;
 }
 
 }  // namespace migiwa

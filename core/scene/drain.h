@@ -42,7 +42,10 @@ class DrainRegion {
   explicit DrainRegion(const Drain& drain);
 
   /// Whether a point (m) is in it; its surface counts.
-  bool contains(const Vec3d& p) const;
+  bool contains(const Vec3d& p) const { return within(p, 0); }
+  /// The same of one grown by `distance` (m) on all sides; the corners of a box stay sharp.
+  bool within(const Vec3d& p, double distance) const;
+  Bounds bounds() const;
 
  private:
   bool sphere_;

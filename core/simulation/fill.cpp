@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include "core/base/messages.h"
 #include "core/base/progress.h"
 #include "core/simulation/frame_view.h"
+#include "core/solver/step.h"
 
 namespace migiwa {
 
@@ -212,37 +214,72 @@ bool makeRoom(StepState& state, std::size_t size) {
   return true;
 }
 
+/// Places of a mouth that are as near to a wall (in spacings) are left out, unless they look out of it.
+constexpr double kLeftOut = 0.25;
+
+/// Where a particle of a mouth begins: at its place, or ahead of one at or in a wall that the fluid comes out
+/// of, where it is half a `spacing` (m) away from walls, up to a spacing ahead. Nothing where it has no room.
+std::optional<Vec3d> openPlace(const Boundary& boundary, const Vec3d& place, const Vec3d& ahead,
+                               double spacing) {
+  const double margin = (0.5 - 1e-3) * spacing;
+  constexpr int kRounds = 8;
+  double first = 0, way = 0;
+  for (int round = 0; round < kRounds && way <= spacing; ++round) {
+    const Vec3d at = place + way * ahead;
+    const auto distance = static_cast<double>(boundary.distance(at.cast<float>()));
+    if (distance >= margin) return at;
+    if (round == 0) first = distance;
+    way += 0.5 * spacing - distance;
+  }
+  return first < kLeftOut * spacing ? std::nullopt : std::optional(place);
+}
+
 }  // namespace
 
 Emission::Emission(Scene& scene, const Boundary& boundary, double most)
     : given_(scene.emitters.size()), most_(most) {
-  const auto margin = static_cast<float>((0.5 - 1e-3) * scene.particleSpacing);
   for (std::size_t k = 0; k < scene.emitters.size(); ++k) {
     const Emitter& emitter = scene.emitters[k];
     // Also of one that begins after the duration, whose particles the reader has not counted.
     requireMemory(kBytesPerParticle * emitter.area() / (scene.particleSpacing * scene.particleSpacing),
                   "the particles of a layer", scene.file.string() + ":/emitters/" + std::to_string(k));
     MouthLayer layer = mouthLayer(emitter, scene.particleSpacing);
-    const auto barred = std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
-      return boundary.distance(place.cast<float>()) < margin;
-    });
-    if (barred > 0) {
-      scene.warnings.push_back("/emitters/" + std::to_string(k) + ": " + std::to_string(barred) + " of the " +
-                               std::to_string(layer.places.size()) +
-                               " particles of a layer lie within or too near the walls");
-    }
+    const Vec3d ahead = emitter.direction.normalized();
+    const std::size_t all = layer.places.size();
+    const auto open = static_cast<std::size_t>(
+        std::count_if(layer.places.begin(), layer.places.end(), [&](const Vec3d& place) {
+          return openPlace(boundary, place, ahead, scene.particleSpacing).has_value();
+        }));
+    const std::string named = "/emitters/" + std::to_string(k) + ": ";
+    if (open == 0)
+      scene.warnings.push_back(
+          named +
+          "it gives nothing, for all of its mouth lies within the walls or outside of the "
+          "vessel. Move its \"center\" to where fluid has room");
+    else if (open < all)
+      scene.warnings.push_back(named + shareOf(all - open, all) +
+                               " lie within or too near the walls and are left out: it gives so much less");
     const double interval = layer.thickness / emitter.mouthSpeed();
-    mouths_.push_back(
-        {emitter, std::move(layer), emitter.mouthSpeed() * emitter.direction.normalized(), interval});
+    mouths_.push_back({emitter, std::move(layer), ahead, emitter.mouthSpeed() * ahead, interval});
   }
 }
 
-void Emission::addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state) {
+void Emission::openPlaces(const Mouth& mouth, const Boundary& boundary, double spacing) {
+  open_.clear();
+  for (const Vec3d& place : mouth.layer.places)
+    if (const auto open = openPlace(boundary, place, mouth.ahead, spacing)) open_.push_back(*open);
+}
+
+void Emission::addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state) const {
   std::int64_t id = firstId;
   Particles& particles = state.particles;
   const bool slots = state.wallSlot.size() == particles.size();
-  for (const Vec3d& place : mouth.layer.places) {
-    particles.position.emplace_back(Vec3f((place + age * mouth.velocity).cast<float>()));
+  for (const Vec3d& place : open_) {
+    Vec3f p = (place + age * mouth.velocity).cast<float>();
+    // The step would throw out what stands in a wall, or has passed through it.
+    p = clipMove(state.collisionWalls, place.cast<float>(), false, p, state.wallMargin());
+    state.boundary.project(p, state.wallMargin());
+    particles.position.emplace_back(p);
     particles.velocity.emplace_back(Vec3f(mouth.velocity.cast<float>()));
     particles.id.push_back(static_cast<std::uint32_t>(id++));
     if (slots) state.wallSlot.push_back(FluidState::kNoWall);
@@ -253,10 +290,11 @@ void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
   for (std::size_t k = 0; k < mouths_.size(); ++k) {
     const Mouth& mouth = mouths_[k];
     EmitterState& given = given_[k];
-    const auto layer = static_cast<std::int64_t>(mouth.layer.places.size());
     while (true) {
       const double leaves = mouth.emitter.start + static_cast<double>(given.layers) * mouth.interval;
       if (leaves > time || leaves >= mouth.emitter.stop) break;
+      openPlaces(mouth, state.boundary, static_cast<double>(state.spacing));
+      const auto layer = static_cast<std::int64_t>(open_.size());
       if (given.particles + layer > mouth.emitter.particles) {
         statistics.note("emitter_limit", statistics.steps,
                         "/emitters/" + std::to_string(k) + " has given the " +
@@ -270,7 +308,7 @@ void Emission::emit(double time, StepState& state, RunStatistics& statistics) {
         statistics.note("particle_limit", statistics.steps, detail.str());
         break;
       }
-      if (!makeRoom(state, state.particles.size() + mouth.layer.places.size())) {
+      if (!makeRoom(state, state.particles.size() + open_.size())) {
         statistics.note("emitter_memory", statistics.steps,
                         "/emitters/" + std::to_string(k) +
                             " gives nothing more: there is no memory left for " + std::to_string(layer) +

@@ -34,14 +34,15 @@ struct EmitterState {
 
 class Emission {
  public:
-  /// Keeps no reference to the scene. Warns of mouths within walls. Throws InputError where a layer has no
-  /// room in memory. `most`: particles that all of the simulation may have.
+  /// Keeps no reference to the scene. Warns of mouths that are within walls. Throws InputError where a layer
+  /// has no room in memory. `most`: particles that all of the simulation may have.
   Emission(Scene& scene, const Boundary& boundary, double most = kLargestCount);
 
   bool empty() const { return mouths_.empty(); }
-  /// Adds the layers that have left by `time` (s), where they are by then, and counts them. Ids go on from
-  /// the number of particles that there ever were, so that none comes twice. An emitter that reaches its
-  /// limit, or that of the simulation or its memory, gives nothing more, and is noted as trouble.
+  /// Adds the layers that have left by `time` (s), where they are by then, and counts them. Places of a mouth
+  /// that have no room give nothing; those at a wall that the fluid comes out of give it in front of it. Ids
+  /// go on from the number of particles that there ever were, so that none comes twice. An emitter that
+  /// reaches its limit, or that of the simulation or its memory, gives nothing more, and is noted as trouble.
   void emit(double time, StepState& state, RunStatistics& statistics);
   /// The largest speed (m/s) at a mouth that is open between `from` and `to` (s).
   double largestSpeed(double from, double to) const;
@@ -53,13 +54,17 @@ class Emission {
   struct Mouth {
     Emitter emitter;
     MouthLayer layer;
+    Vec3d ahead;      ///< unit
     Vec3d velocity;   ///< (m/s)
     double interval;  ///< from layer to layer (s)
   };
-  static void addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state);
+  /// Puts the places where particles begin now into open_.
+  void openPlaces(const Mouth& mouth, const Boundary& boundary, double spacing);
+  void addLayer(const Mouth& mouth, double age, std::int64_t firstId, StepState& state) const;
 
   std::vector<Mouth> mouths_;
   std::vector<EmitterState> given_;
+  std::vector<Vec3d> open_;  ///< of the layer that leaves (m)
   double most_;
 };
 
@@ -67,8 +72,8 @@ class Emission {
 
 class Outflow {
  public:
-  /// Keeps no reference to the scene.
-  explicit Outflow(const Scene& scene);
+  /// Keeps no reference to the scene. Warns of drains that no fluid can come into.
+  Outflow(Scene& scene, const Boundary& boundary);
 
   /// Whether a drain is open at `time` (s).
   bool anyOpen(double time) const;

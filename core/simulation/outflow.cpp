@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <numeric>
+#include <sstream>
 #include <string>
 
 #include "core/base/parallel.h"
@@ -20,10 +22,84 @@ void keep(std::vector<T>& values, const std::vector<int>& fates) {
   values.resize(kept);
 }
 
+/// Whether a place of the region may be `margin` (m) away from every wall. Boxes that are certainly nearer,
+/// or beyond the region, are passed over, others divided.
+class RoomInRegion {
+ public:
+  RoomInRegion(const DrainRegion& region, const Boundary& boundary, double margin)
+      : region_(region), boundary_(boundary), margin_(margin) {}
+
+  bool found() {
+    const Bounds bounds = region_.bounds();
+    return search(bounds.center(), 0.5 * bounds.size());
+  }
+
+ private:
+  bool search(const Vec3d& center, const Vec3d& half) {
+    // What takes so long to tell, or lies so near, is given the benefit of the doubt.
+    constexpr int kMostAsked = 100000;
+    constexpr double kSmallest = 1.0 / 16;
+    if (!region_.within(center, half.norm())) return false;
+    const auto distance = static_cast<double>(boundary_.distance(center.cast<float>()));
+    if (distance >= margin_ && region_.contains(center)) return true;
+    if (distance + static_cast<double>(boundary_.steepness()) * half.norm() < margin_) return false;
+    int axis = 0;
+    if (++asked_ > kMostAsked || half.maxCoeff(&axis) < kSmallest * margin_) return true;
+    const Vec3d offset = 0.5 * half[axis] * Vec3d::Unit(axis);
+    return search(center - offset, half - offset) || search(center + offset, half - offset);
+  }
+
+  const DrainRegion& region_;
+  const Boundary& boundary_;
+  double margin_;
+  int asked_ = 0;
+};
+
+/// Of walls that move nobody knows here what they leave room for.
+Boundary stillWalls(const Boundary& boundary) {
+  std::vector<std::shared_ptr<const Surface>> still;
+  for (const auto& surface : boundary.surfaces())
+    if (dynamic_cast<const MovingSurface*>(surface.get()) == nullptr) still.push_back(surface);
+  return Boundary::atRest(std::move(still));
+}
+
+std::string extentOf(const Bounds& bounds, const Vec3d& origin) {
+  std::ostringstream text;
+  text.precision(origin.isZero(0) ? 4 : 10);
+  const auto place = [&](const Vec3d& p) {
+    text << '(' << origin.x() + p.x() << ", " << origin.y() + p.y() << ", " << origin.z() + p.z() << ')';
+  };
+  place(bounds.min);
+  text << " to ";
+  place(bounds.max);
+  text << " m";
+  return text.str();
+}
+
 }  // namespace
 
-Outflow::Outflow(const Scene& scene) {
-  for (const Drain& drain : scene.drains) outlets_.push_back({drain, DrainRegion(drain)});
+Outflow::Outflow(Scene& scene, const Boundary& boundary) {
+  const Bounds extent = scene.bounds();
+  const Boundary still = stillWalls(boundary);
+  // Walls keep the centres of particles half a spacing away, but for rounding.
+  const double margin = (0.5 - 1e-3) * scene.particleSpacing;
+  for (const Drain& drain : scene.drains) {
+    outlets_.push_back({drain, DrainRegion(drain)});
+    const DrainRegion& region = outlets_.back().region;
+    const Bounds own = region.bounds();
+    const std::string places = ": from " + extentOf(own, scene.origin) + "; fluid and walls reach from " +
+                               extentOf(extent, scene.origin);
+    const std::string named = "/drains/" + std::to_string(outlets_.size() - 1) + ": ";
+    if (!still.empty() && !RoomInRegion(region, still, margin).found())
+      scene.warnings.push_back(
+          named +
+          "it never takes anything, for all of it lies within the walls, outside of the vessel, or nearer "
+          "to a wall than half a particle_spacing" +
+          places + ". Move it to where fluid comes by");
+    else if (const Vec3d gap = (own.min - extent.max).cwiseMax(extent.min - own.max).cwiseMax(0);
+             !extent.empty() && gap.norm() > std::max(own.size().maxCoeff(), extent.size().maxCoeff()))
+      scene.warnings.push_back(named + "it is far from fluid and walls" + places + ". Check the coordinates");
+  }
 }
 
 bool Outflow::anyOpen(double time) const {

@@ -81,7 +81,7 @@ Simulation::State::State(Scene theScene, int threads, Guards guards)
       boundary(wallsOf(scene, pool)),
       step(pool, boundary),
       emission(scene, boundary),
-      outflow(scene),
+      outflow(scene, boundary),
       gauges(scene, boundary) {
   step.guards = guards == Guards::on;
 }

@@ -196,10 +196,11 @@ double takeFromShift(StepState& state, double excess) {
   if (lifted <= 0) return 0;
   const auto share = static_cast<float>(std::min(1.0, excess / lifted));
   parallelEach(state.pool, state.particles.size(), [&](std::size_t i) {
-    state.current[i].setXyz(state.particles.position[i].xyz() - share * shift(i));
+    Vec3f place = state.particles.position[i].xyz() - share * shift(i);
+    state.boundary.project(place, state.wallMargin());
+    state.current[i].setXyz(place);
   });
   state.particles.position.swap(state.before.position);
-  stages::projectAll(state);
   stages::updatePositions(state);
   return lifted - lift();
 }

@@ -138,8 +138,8 @@ struct HeldEnergy {
 
 /// Takes `excess` (m^2/s^2, a sum over the particles) of a finished step's energy back, or as much of it as
 /// there is, where it was gained. Of positions only the shift of a projection changes; else they stay, and so
-/// what the solve has undone of density errors. What moving walls gave less by it is taken off their work, and effects on velocities act
-/// anew. The neighbours are those that the step was solved with.
+/// what the solve has undone of density errors. What moving walls gave less by it is taken off their work,
+/// and effects on velocities act anew. The neighbours are those that the step was solved with.
 HeldEnergy holdEnergy(StepState& state, EffectPipeline& effects, double excess);
 
 }  // namespace migiwa

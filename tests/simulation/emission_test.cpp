@@ -148,6 +148,63 @@ TEST(Emission, BoundsOfALopsidedMouthHoldIt) {
     }
 }
 
+Scene tapIn(const Emitter& emitter) {
+  Scene scene = emptyScene();
+  scene.gravity = {0, -9.81, 0};
+  scene.emitters = {emitter};
+  addTank(scene, Vec3d::Zero(), Vec3d::Ones());
+  return scene;
+}
+
+Emitter tapAt(const Vec3d& center, const Vec3d& direction) {
+  Emitter emitter = rectangle(6 * kSpacing, 6 * kSpacing, direction, 1);
+  emitter.center = center;
+  emitter.xAxis = {0, 0, 1};
+  return emitter;
+}
+
+TEST(Emission, WhatOfAMouthLiesInAWallGivesNothingAndAddsNoEnergy) {
+  // In the edge of two walls: a quarter of its 36 places is in the tank.
+  Simulation simulation(tapIn(tapAt({0, 0.8, 0}, {0, -1, 0})), 1);
+  ASSERT_EQ(simulation.scene().warnings.size(), 1U);
+  EXPECT_EQ(
+      simulation.scene().warnings[0],
+      "/emitters/0: 75 % of its particles (27 of 36) lie within or too near the walls and are left out: "
+      "it gives so much less");
+  for (int k = 0; k < 60; ++k) {
+    simulation.advanceFrame();
+    const RunStatistics& run = simulation.statistics();
+    ASSERT_EQ(run.fluid.emitted % 9, 0);
+    // A layer in the time that one takes to pass.
+    ASSERT_NEAR(static_cast<double>(run.fluid.emitted / 9), simulation.time() / kSpacing, 1.2);
+  }
+  EXPECT_TRUE(simulation.statistics().trouble.empty()) << simulation.statistics().trouble.front().detail;
+}
+
+TEST(Emission, AMouthInTheFloorGivesAllOfItsRateInFrontOfTheFloor) {
+  // Layers that stand in the floor were thrown out of it.
+  for (const double depth : {0.0, 0.4 * kSpacing}) {
+    Simulation simulation(tapIn(tapAt({0.5, -depth, 0.5}, {0, 1, 0})), 1);
+    EXPECT_TRUE(simulation.scene().warnings.empty());
+    simulation.advanceFrame();
+    const FrameView view = simulation.view();
+    ASSERT_EQ(view.positions.size(), 36U);
+    const double rise = simulation.time() * 1;
+    for (const Float4& p : view.positions)
+      EXPECT_NEAR(static_cast<double>(p.y), 0.5 * kSpacing + rise, 0.02 * kSpacing) << depth;
+    EXPECT_TRUE(simulation.statistics().trouble.empty()) << simulation.statistics().trouble.front().detail;
+  }
+}
+
+TEST(Emission, AMouthOutsideOfTheVesselIsNamed) {
+  Simulation simulation(tapIn(tapAt({0.5, 0.5, -1}, {0, -1, 0})), 1);
+  ASSERT_EQ(simulation.scene().warnings.size(), 1U);
+  EXPECT_TRUE(simulation.scene().warnings[0].starts_with("/emitters/0: it gives nothing"))
+      << simulation.scene().warnings[0];
+  for (int k = 0; k < 5; ++k) simulation.advanceFrame();
+  EXPECT_EQ(simulation.statistics().fluid.emitted, 0);
+}
+
 TEST(Emission, TheHashDoesNotDependOnThreads) {
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2, 3}) {

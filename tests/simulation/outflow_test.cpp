@@ -148,8 +148,9 @@ TEST(Outflow, BoundsAndDrainsAreWrittenAsTheyAreReadAndFluidBeyondThemIsWarnedOf
     "drains": [ { "shape": "box", "min": [0, 0, 0], "max": [0.1, 0.2, 0.3], "rotation": { "axis": [0, 1, 0], "degrees": 30 } },
                 { "shape": "sphere", "center": [1, 0, 0], "radius": 0.2, "start": 1, "stop": 2 } ],
     "bounds": { "min": [-1, -1, -1], "max": [1, 1, 1] } })",
-                                 "a.json");
-  ASSERT_EQ(scene.warnings.size(), 2U);
+                                 "a.json", {{"/drains/1/center", "[2, 0, 0]"}});
+  ASSERT_EQ(scene.warnings.size(), 3U);
+  EXPECT_NE(scene.warnings[2].find("drains/1 lies outside"), std::string::npos) << scene.warnings[2];
   EXPECT_NE(scene.warnings[0].find("fluid/1 lies outside"), std::string::npos) << scene.warnings[0];
   EXPECT_NE(scene.warnings[1].find("emitters/0 lies outside"), std::string::npos) << scene.warnings[1];
   EXPECT_EQ(scene.domainBounds().max, Vec3d(1, 1, 1));
@@ -284,6 +285,48 @@ TEST(Drains, IdsStayUniqueAndNoneComesTwice) {
   }
   EXPECT_GT(gone.size(), 100U);
   EXPECT_EQ(static_cast<std::int64_t>(gone.size()), simulation.statistics().fluid.drained());
+}
+
+TEST(Drains, ThatNoFluidCanComeIntoAreNamedWithBothPlacesAndTheRemedy) {
+  const auto warnings = [](const Drain& drain) {
+    Scene scene = emptyScene();
+    addTank(scene, Vec3d::Zero(), Vec3d::Ones());
+    scene.surfaces.push_back(
+        std::make_shared<Box>(Vec3d(0.4, 0, 0.4), Vec3d(0.6, 0.5, 0.6), Box::Fluid::outside));
+    scene.drains = {drain};
+    return Simulation(scene, 1).scene().warnings;
+  };
+  // Half a spacing is as near to a wall as particles come.
+  constexpr double kBarely = 0.52 * kSpacing, kTooLittle = 0.45 * kSpacing;
+  EXPECT_TRUE(warnings(boxDrain({0.2, -0.3, 0.2}, {0.3, kBarely, 0.3})).empty());
+  EXPECT_TRUE(warnings(boxDrain({-1, -1, -1}, {2, 2, 2})).empty());
+  EXPECT_TRUE(warnings(boxDrain({0.3, 0.1, 0.3}, {0.7, 0.2, 0.7})).empty()) << "around the block";
+  EXPECT_EQ(warnings(boxDrain({0.2, -0.3, 0.2}, {0.3, kTooLittle, 0.3})).size(), 1U);
+  EXPECT_EQ(warnings(boxDrain({0.41, 0.1, 0.41}, {0.59, 0.4, 0.59})).size(), 1U) << "in the block";
+  Drain ball;
+  ball.shape = DrainShape::sphere;
+  ball.radius = 0.2;
+  // Its bounds reach into the tank's corner, the ball itself does not.
+  ball.center = {1.15, 1.15, 0.5};
+  EXPECT_EQ(warnings(ball).size(), 1U);
+  ball.center = {1.1, 1.1, 0.5};
+  EXPECT_TRUE(warnings(ball).empty());
+  const auto outside = warnings(boxDrain({2, 0, 0}, {2.5, 0.2, 0.25}));
+  ASSERT_EQ(outside.size(), 1U);
+  EXPECT_EQ(
+      outside[0],
+      "/drains/0: it never takes anything, for all of it lies within the walls, outside of the vessel, "
+      "or nearer to a wall than half a particle_spacing: from (2, 0, 0) to (2.5, 0.2, 0.25) m; fluid and "
+      "walls reach from (0, 0, 0) to (1, 1, 1) m. Move it to where fluid comes by");
+}
+
+TEST(Drains, FarFromAllElseAreNamed) {
+  Scene scene = table();
+  scene.drains = {boxDrain({0, -1.4, 0}, {0.5, -1, 0.5}), boxDrain({0, -9, 0}, {0.5, -8, 0.5})};
+  const auto warnings = Simulation(scene, 1).scene().warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].starts_with("/drains/1: it is far from fluid and walls: from (0, -9, 0) to "))
+      << warnings[0];
 }
 
 TEST(Drains, TheHashDoesNotDependOnThreadsNorOnASave) {
