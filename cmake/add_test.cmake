@@ -13,6 +13,11 @@ set(migiwa_test_cache ${CMAKE_BINARY_DIR}/test_cache)
 add_test(NAME test_cache_emptied COMMAND ${CMAKE_COMMAND} -E rm -rf ${migiwa_test_cache})
 set_tests_properties(test_cache_emptied PROPERTIES FIXTURES_SETUP test_cache)
 
+# Gives each of them a folder of its own.
+add_library(migiwa_test_folder OBJECT ${PROJECT_SOURCE_DIR}/tests/support/own_folder.cpp)
+target_link_libraries(migiwa_test_folder PUBLIC GTest::gtest_main)
+migiwa_target_options(migiwa_test_folder)
+
 # What all test programs read, parsed once for all of them.
 file(WRITE ${CMAKE_BINARY_DIR}/precompiled_for_tests.cpp "// Nothing but the precompiled headers.\n")
 add_library(migiwa_test_headers OBJECT ${CMAKE_BINARY_DIR}/precompiled_for_tests.cpp)
@@ -39,7 +44,7 @@ function(migiwa_add_test name)
   endif()
 
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE migiwa_core GTest::gtest_main ${arg_LINK})
+  target_link_libraries(${name} PRIVATE migiwa_core migiwa_test_folder ${arg_LINK})
   target_compile_definitions(${name} PRIVATE MIGIWA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   migiwa_target_options(${name})
   migiwa_reuse_test_headers(${name})

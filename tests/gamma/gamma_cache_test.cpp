@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/messages.h"
 #include "core/gamma/baked.h"
@@ -23,7 +22,7 @@ class GammaCache : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("migiwa_" + std::string(test->name()) + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / test->name();
     fs::remove_all(folder_);
     if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
     setenv("MIGIWA_CACHE", folder_.c_str(), 1);

@@ -1,7 +1,5 @@
 #include "tests/render/test_scene.h"
 
-#include <unistd.h>
-
 #include "core/scene/scene_file.h"
 
 namespace migiwa {
@@ -32,8 +30,7 @@ FrameSnapshot frameOf(const std::vector<Vec3f>& centers, float diameter, float s
 }
 
 std::filesystem::path freshFolder(const std::string& name) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("migiwa_" + name + "_" + std::to_string(getpid()));
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/gamma/gamma_method.h"
 #include "core/scene/json.h"
@@ -32,7 +31,7 @@ class EditedFile : public ::testing::Test {
  protected:
   EditedFile() {
     const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = fs::temp_directory_path() / ("migiwa_edited_" + name + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / name;
     fs::create_directories(folder_);
     if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
     setenv("MIGIWA_CACHE", (folder_ / "cache").c_str(), 1);

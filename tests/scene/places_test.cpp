@@ -35,7 +35,7 @@ class Places : public ::testing::Test {
         .warnings;
   }
 
-  std::filesystem::path file_ = std::filesystem::path(::testing::TempDir()) / "migiwa_places.obj";
+  std::filesystem::path file_ = std::filesystem::path(::testing::TempDir()) / "places.obj";
 };
 
 TEST_F(Places, MillimetresAmongMetresAreNamedWithBothSizesAndTheRemedy) {

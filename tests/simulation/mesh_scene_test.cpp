@@ -6,7 +6,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
@@ -58,9 +57,7 @@ TriangleMesh cupMesh(double radius, double height, double thickness) {
 class MeshScene : public ::testing::Test {
  protected:
   MeshScene() {
-    folder_ = fs::temp_directory_path() /
-              ("migiwa_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
-               std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / ::testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::create_directories(folder_);
   }
   ~MeshScene() override { fs::remove_all(folder_); }

@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/scene/scene_file.h"
 #include "core/simulation/simulation.h"
@@ -27,8 +26,7 @@ Scene tankScene(const std::string& wall, const std::filesystem::path& folder) {
 
 /// A tank whose mesh is fitted: its edges are rounded, and its planes miss the mesh a little.
 TEST(FittedWalls, NoParticleOfAFlushSourceIsLost) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("migiwa_fitted_" + std::to_string(getpid()));
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fitted";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "wall.obj") << testing::objText(testing::blockMesh({0, 0, 0}, {1, 1, 0.5}));
   const auto run = [](Simulation& simulation) {

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/files.h"
 #include "core/walls/slim_wall.h"
@@ -25,7 +24,7 @@ class SlimCache : public ::testing::Test {
  protected:
   SlimCache() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("migiwa_" + std::string(test->name()) + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / test->name();
     fs::create_directories(folder_);
     if (const char* value = std::getenv("MIGIWA_CACHE")) before_ = value;
     setenv("MIGIWA_CACHE", (folder_ / "cache").c_str(), 1);

@@ -8,7 +8,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/gamma/baked.h"
 #include "core/gamma/gamma_method.h"
@@ -401,8 +400,7 @@ TEST(GammaOfMeshes, AtRightAngledEdgesIsWithinAHundredthOfThatOfPlanes) {
 
 /// What is kept on disk about walls goes by their description: two clouds must not pass for each other.
 TEST(MeshSurface, OfPointsIsToldByWhatIsInItsFile) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("migiwa_clouds_" + std::to_string(getpid()));
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "clouds";
   std::filesystem::create_directories(folder);
   std::vector<std::string> descriptions;
   for (const double radius : {0.3, 0.25}) {

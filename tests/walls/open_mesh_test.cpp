@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/messages.h"
 #include "core/scene/scene_file.h"
@@ -39,8 +38,7 @@ std::string stripText(int halfTurns) {
 }
 
 TEST(MeshWall, AMoebiusStripIsASheetThatIsWetAllOver) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("migiwa_strip_" + std::to_string(getpid()) + ".obj");
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "strip.obj";
   for (const int halfTurns : {0, 1, 2, 3}) {
     std::ofstream(file) << stripText(halfTurns);
     const std::vector<WallTriangle> faces = wallFaces(importShape(file).mesh, false, "test");
@@ -58,8 +56,7 @@ TEST(MeshWall, AMoebiusStripIsASheetThatIsWetAllOver) {
 }
 
 TEST(MeshSource, SaysWhereAMeshIsOpen) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("migiwa_open_" + std::to_string(getpid()) + ".obj");
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "open.obj";
   // A tetrahedron without its floor.
   std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 0 0 2\nv 0 2 0\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
   try {
