@@ -68,6 +68,33 @@ double wallPush(const StepState& state) {
   });
 }
 
+double projectionWork(const StepState& state) {
+  const float support = state.supportRadius, toGradient = -0.5F / (support * support);
+  return parallelSum(state.pool, state.wallSlots.size(), [&](std::size_t k) {
+    const WallSlot& slot = state.wallSlots[k];
+    const std::size_t i = slot.particle;
+    const Vec3f velocity = state.boundary.wallVelocity(slot.at.xyz());
+    const InverseMoment& inverse = state.projection.inverse[i];
+    const Float4& own = state.paired[i];
+    Vec3f push;
+    if (inverse.sound) {
+      Vec3f differences = Vec3f::Zero(), sums = Vec3f::Zero();
+      const float* factor = state.neighbours.pairValues(i);
+      for (const std::uint32_t j : state.neighbours.of(i)) {
+        const Float4& other = state.paired[j];
+        const Vec3f offset = *factor++ * (own.xyz() - other.xyz());
+        differences += (other.w - own.w) * offset;
+        sums += (other.w + own.w) * offset;
+      }
+      push = toGradient * (sums - inverse.times(differences));
+    } else {
+      const float fall = (state.addsWallDensity() ? 1 : state.density[i]) * own.w / support;
+      push = fall * slot.sample.pairGradient;
+    }
+    return static_cast<double>(state.timeStep * push.dot(velocity));
+  });
+}
+
 void PressureSum::watch(bool on) {
   if (on == watched_) return;
   watched_ = on;

@@ -64,6 +64,11 @@ class WallWork {
 /// What the walls' push of the last stages::movePositions adds, before it is stretched.
 double wallPush(const StepState& state);
 
+/// The same of the pressure of a projection, for WallWork::add. Its gradient is made so that it is exact
+/// beside walls, not out of the walls' push; that is what it has more than the sum of pairs, which give each
+/// other what they take: grad phi_i - (m/rho0) sum_j (phi_i + phi_j) grad W_ij.
+double projectionWork(const StepState& state);
+
 // The pressure that a step's multipliers stand for. An iteration of PBF moves particles by
 //   dx_i = sum_k lambda_k grad_i C_k,
 // C being the relative compression. The work of a pressure p on a particle of volume V that is compressed by

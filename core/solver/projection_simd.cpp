@@ -403,18 +403,6 @@ class PotentialSolve {
   PotentialSums left_;
 };
 
-/// Work of the pressure on moving walls' account: its impulse on each particle times the wall's velocity.
-double pressureWork(const StepState& state) {
-  return parallelSum(state.pool, state.wallSlots.size(), [&](std::size_t k) {
-    const WallSlot& slot = state.wallSlots[k];
-    const std::size_t i = slot.particle;
-    const float fall = state.addsWallDensity() ? 1 : state.density[i];
-    const float push = 2 * state.timeStep * state.projection.potential[i] * fall / state.supportRadius;
-    const Vec3f velocity = state.boundary.wallVelocity(slot.at.xyz());
-    return static_cast<double>(push * slot.sample.pairGradient.dot(velocity));
-  });
-}
-
 /// Memory, and what the passes over pairs gather: positions, velocities, the potential of the step before.
 void prepareProjection(StepState& state) {
   const std::size_t n = state.particles.size();
@@ -493,7 +481,7 @@ void stages::projectVelocities(StepState& state) {
   parallelFor(state.pool, n,
               [&](std::size_t begin, std::size_t end, std::size_t) { push(state, begin, end); });
   state.pressure.project(state);
-  if (state.boundary.moves()) state.wallWork.add(pressureWork(state));
+  if (state.boundary.moves()) state.wallWork.add(projectionWork(state));
 }
 
 }  // namespace migiwa

@@ -182,7 +182,7 @@ TEST_F(Inspecting, AClickPicksAndShowsWhatTheRunKnows) {
   std::size_t near = 0;
   for (const Float4& other : frame_.positions) {
     const double distance = (other.xyz() - picked.position).cast<double>().norm();
-    near += distance > 0 && distance < tank().supportRadius() ? 1 : 0;
+    if (distance > 0 && distance < tank().supportRadius()) ++near;
   }
   EXPECT_EQ(picked.around.size(), near);
   const std::string text = shownText();

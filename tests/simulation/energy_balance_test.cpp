@@ -54,17 +54,24 @@ Scene shovedBlock() {
   return scene;
 }
 
+// The only force is the wall's, and the wall is at 1 m/s all the time. A projection's gradient does not
+// conserve momentum to the last digit: what its errors inside the fluid give is nobody's work.
 TEST(EnergyBalance, AWallThatShovesDoesTheWorkOfItsImpulse) {
-  Simulation simulation(shovedBlock(), 1);
-  advance(simulation, 1);
-  double impulse = 0;
-  for (const Float4& v : simulation.view().velocities) impulse += static_cast<double>(v.x);
-  const EnergyBalance& energy = simulation.statistics().energy;
-  ASSERT_GT(impulse, 0.9 * static_cast<double>(simulation.view().positions.size())) << "it must move along";
-  // The only force is the wall's, and the wall is at 1 m/s all the time.
-  EXPECT_NEAR(energy.walls, impulse * 1.0, 1e-3 * impulse);
-  EXPECT_GE(energy.walls, energy.kinetic);
-  EXPECT_NEAR(energy.solver, energy.kinetic - energy.walls, 1e-3 * energy.walls);
+  for (const auto& [step, share] :
+       {std::pair{VelocityStep::positions, 1e-3}, {VelocityStep::projection, 0.03}}) {
+    SCOPED_TRACE(share);
+    Scene scene = shovedBlock();
+    scene.solver.takeVelocities(step);
+    Simulation simulation(scene, 1);
+    advance(simulation, 1);
+    double impulse = 0;
+    for (const Float4& v : simulation.view().velocities) impulse += static_cast<double>(v.x);
+    const EnergyBalance& energy = simulation.statistics().energy;
+    ASSERT_GT(impulse, 0.9 * static_cast<double>(simulation.view().positions.size())) << "it must move along";
+    EXPECT_NEAR(energy.walls, impulse * 1.0, share * impulse);
+    EXPECT_GE(energy.walls, energy.kinetic);
+    EXPECT_NEAR(energy.solver, energy.kinetic - energy.walls, 1e-3 * energy.walls);
+  }
 }
 
 TEST(EnergyBalance, AnEmitterGivesTheKineticEnergyOfItsJet) {

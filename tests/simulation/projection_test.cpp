@@ -367,57 +367,5 @@ TEST(Projection, TheViscosityAgainstNoiseIsTheOneThatItStates) {
   }
 }
 
-// The divergence does not see all noise. Without a viscosity against it this tank boils at 0.4 m/s; where
-// density errors gather until their mean is the tolerance, the coarse one trembles at 0.1 m/s.
-TEST(Projection, WaterWithoutAnyViscosityIsStillForLong) {
-  for (const double tolerance : {0.003, 0.03}) {
-    SCOPED_TRACE(tolerance);
-    Scene scene = projected(stillTank({12, 12, 12}));
-    scene.solver.tolerance = tolerance;
-    Simulation simulation(scene);
-    const SettledMeasures settled = runUntil(simulation, 8);
-    EXPECT_LT(*settled.rmsSpeed, 0.012);
-    EXPECT_TRUE(simulation.statistics().trouble.empty());
-  }
-}
-
-// d v / dt = nu laplace v of layers that slide over each other, far from the sides of a falling block.
-TEST(Projection, TheViscosityAgainstNoiseIsTheOneThatItStates) {
-  constexpr int kCells = 20;
-  constexpr double kSide = kCells * kSpacing, kSpeed = 0.1, kWave = 2 * std::numbers::pi / kSide;
-  for (const double timeStep : {0.005, 0.00125}) {
-    SCOPED_TRACE(timeStep);
-    Scene scene = projected(emptyScene());
-    scene.gravity = {0, 0, -9.81};
-    scene.solver.timeStep = timeStep;
-    for (int layer = 0; layer < kCells; ++layer) {
-      const double low = layer * kSpacing;
-      addFluid(scene, {0, low, 0}, {kSide, low + kSpacing, kSide},
-               {kSpeed * std::sin(kWave * (low + 0.5 * kSpacing)), 0, 0});
-    }
-    Simulation simulation(scene);
-    const auto inside = [&](const Float4& p) {
-      const double z = static_cast<double>(p.z) - 0.5 * scene.gravity.z() * std::pow(simulation.time(), 2);
-      return std::min({static_cast<double>(p.x), static_cast<double>(p.y), z}) > 0.25 &&
-             std::max({static_cast<double>(p.x), static_cast<double>(p.y), z}) < 0.75;
-    };
-    const auto amplitude = [&] {
-      double along = 0, square = 0;
-      const FrameView view = simulation.view();
-      for (std::size_t i = 0; i < view.positions.size(); ++i) {
-        if (!inside(view.positions[i])) continue;
-        const double form = std::sin(kWave * static_cast<double>(view.positions[i].y));
-        along += form * static_cast<double>(view.velocities[i].x), square += form * form;
-      }
-      return along / square;
-    };
-    const double before = amplitude();
-    while (simulation.time() < 0.1 - 1e-9) simulation.advanceFrame();
-    const double fall = std::sqrt(2 * kSpacing / 9.81) / 2;  // half the time of a fall by a spacing
-    const double viscosity = 0.2 * kSpacing * kSpacing / fall;
-    EXPECT_NEAR(std::log(before / amplitude()) / (viscosity * kWave * kWave * simulation.time()), 1, 0.15);
-  }
-}
-
 }  // namespace projection_test
 }  // namespace migiwa
