@@ -128,6 +128,14 @@ stages::ErrorSum computeLambdaOfRange(StepState& state, std::size_t begin, std::
 //   dx_i = (m/rho0) sum_j (lambda_i/gamma_i + lambda_j/gamma_j) grad W_ij - lambda_i rho_i/(rho0 gamma_i)
 //   grad gamma_i,
 // whose last term is the wall pushing back; Eq. 10 as printed lets particles crowd the wall.
+//
+// Where a pressure makes the velocities, particles follow the flow, and a packing that it has stretched stays
+// stretched: pairs come nearer than three quarters of a spacing, read denser than fluid at rest, and a wave
+// that lifts the fluid by that grows. So what moves positions alone evens the packing out, too: it goes down
+// the density's gradient [LXSR],
+//   dx_i -= e_i ((m/rho0) sum_j grad W_ij - rho_i/rho0 grad gamma_i),
+// by the push of a density error of 0.03 dt / T, T being that of the projection; inside only, for
+// at the surface there is a gradient by nature.
 
 /// Sum over the neighbours of (w_i + w_j) times the push of the pair kernel, without its constant.
 template <class Kernel, class Centre>
@@ -135,7 +143,7 @@ HWY_INLINE PairSums pushOfPairs(const StepState& state, const Centre& centre, st
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
   const Float4* const others = state.paired.data();
-  const PairVector own = hn::Set(d, others[i].w);
+  const PairVector own = hn::Set(d, others[i].w - state.evening(i));
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   Coincidence<Pair> coincidence;
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
@@ -172,7 +180,8 @@ void moveRange(StepState& state, float weight, std::size_t begin, std::size_t en
     at.z = hn::MulAdd(pairScale, sums.z, at.z);
     if (wallPush) {
       const Vectors wall = gatherAtWalls(state.wallSlot.data(), first, count, [&state](std::size_t i) {
-        return Vec3f(state.wallPush(i) * state.wallSlots[state.wallSlot[i]].sample.pairGradient);
+        return Vec3f((state.wallPush(i) - state.evening(i) * state.density[i]) *
+                     state.wallSlots[state.wallSlot[i]].sample.pairGradient);
       });
       at.x = hn::NegMulAdd(support, wall.x, at.x);
       at.y = hn::NegMulAdd(support, wall.y, at.y);

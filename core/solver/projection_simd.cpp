@@ -73,16 +73,11 @@ struct PotentialSums {
 HWY_BEFORE_NAMESPACE();
 namespace migiwa::HWY_NAMESPACE {
 
-/// dt / T, T being half the time in which a particle falls by its spacing, and not less than a step.
-inline float fallen(const StepState& state) {
-  return std::min(state.timeStep * 2 * std::sqrt(0.5F * state.gravity.norm() / state.spacing), 1.0F);
-}
-
 /// What a step takes of the differences of velocities between neighbours, over F h^2 (1).
 inline float filterOf(const StepState& state) {
   constexpr float kOfFall = 0.2F;
   const float spacings = state.spacing / state.supportRadius;
-  return kOfFall * fallen(state) * spacings * spacings;
+  return kOfFall * state.fallen() * spacings * spacings;
 }
 
 /// Density, moment, divergence and diagonal, without the surface's share, what the potential of the step
@@ -98,7 +93,7 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   ProjectionBuffers& out = state.projection;
   const float slope = state.lattice.massRatio * Shape::kSlope;
   const float support = state.supportRadius,
-              toRoom = support * support / state.timeStep * (fallen(state) > 0 ? fallen(state) : 1);
+              toRoom = support * support / state.timeStep * (state.fallen() > 0 ? state.fallen() : 1);
   const PairVector toFactor = hn::Set(d, -2 * slope);
   const bool added = state.addsWallDensity();
   state.neighbours.makePairValues(begin / kChunk);
@@ -154,7 +149,10 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
     const float sum = state.lattice.massRatio * (Shape::kValue * diagonal.w + Kernel::value(0));
     const float density = correctedDensity(sum, resting, added);
     const float toMoment = -slope * scale.inverseSquare;
-    const InverseMoment inverse(toMoment * diagonal.xyz(), toMoment * rest.xyz());
+    // What pushes by depth has to carry the fluid alone: a gradient that is exact without it holds it up,
+    // too.
+    const InverseMoment inverse =
+        state.softWalls() ? InverseMoment() : InverseMoment(toMoment * diagonal.xyz(), toMoment * rest.xyz());
     float compression = slope * flow.xyz().sum();
     if (inverse.sound) {
       const float third = toMoment * diagonal.xyz().sum() / 3;

@@ -214,10 +214,8 @@ struct RestingLattice {
 
   /// What the sum over the neighbours reads beside walls where fluid is at rest, over gamma times that far
   /// from walls. It is more than 1: gamma is that of a continuum, and the particle itself, whose share is the
-  /// largest, is all on the fluid's side. A first layer of the lattice, half a spacing from a plane, reads
-  /// some percent more; fluid that has moved and come to rest 0.65 of that (measured: with this part, water
-  /// at rest is calmest, for both kernels that a projection may have). A fit in gamma, exact for that layer,
-  /// and where two planes meet and the factor is squared as gamma is.
+  /// largest, is all on the fluid's side. A fit in gamma to a part of what the lattice's first layer has
+  /// more, half a spacing from a plane, and where two planes meet and the factor is squared as gamma is.
   float besideWalls(float gamma) const {
     const float covered = 1 - gamma;
     return 1 + covered * (wallSlope + wallBend * covered);

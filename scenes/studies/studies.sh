@@ -4,8 +4,9 @@
 # Methods of gamma and the other ways to handle walls, varied as one.
 wall_methods=/boundary/handling:/boundary/gamma/method=gamma:auto,gamma:directions,gamma:mean,particles,wall_weight,spline,none
 
-# Velocities from positions, as the paper has them: what walls and iterations do to positions, they do to the water.
-paper=(--set /solver/velocity_step=positions)
+# Velocities from positions, as the paper has them: what walls and iterations do to positions, they do to the water. At
+# small tolerances they need XSPH.
+paper=(--set /solver/velocity_step=positions --set /effects/viscosity/xsph=0.05)
 
 # studyOfWalls DIR SCENE SPACING: a coarse scene with every way to handle walls, at several numbers of iterations.
 studyOfWalls() {

@@ -83,9 +83,8 @@ double continuumBeside(double ratio, int belowX, int belowY) {
          integral(-1, -1);
 }
 
-// Fluid reads 0.65 of what a lattice has too much: beside a plane, in the edge of two, and a layer further
-// in.
-TEST(RestingLattice, BesideWallsReadsAPartOfWhatItsSumsHaveTooMuch) {
+// Four fifths of it, beside a plane, in the edge of two, and a layer further in.
+TEST(RestingLattice, BesideWallsReadsWhatItsSumsHaveTooMuch) {
   for (const KernelType type : {KernelType::wendlandC2, KernelType::cubicSpline}) {
     for (const double ratio : {2.0, 2.25}) {
       withKernel(type, [&](auto kernel) {
@@ -95,8 +94,8 @@ TEST(RestingLattice, BesideWallsReadsAPartOfWhatItsSumsHaveTooMuch) {
         for (const auto& [x, y] : {std::pair(0, 4), std::pair(0, 0), std::pair(1, 4), std::pair(0, 1)}) {
           const double gamma = continuumBeside<Kernel>(ratio, x, y);
           const double tooMuch = latticeBeside<Kernel>(ratio, x, y) / everywhere / gamma - 1;
-          EXPECT_NEAR(static_cast<double>(lattice.besideWalls(static_cast<float>(gamma))), 1 + 0.65 * tooMuch,
-                      0.005)
+          EXPECT_NEAR(static_cast<double>(lattice.besideWalls(static_cast<float>(gamma))), 1 + 0.8 * tooMuch,
+                      0.006)
               << kKernelNames[static_cast<std::size_t>(type)] << ' ' << ratio << ' ' << x << ' ' << y;
         }
         EXPECT_EQ(lattice.besideWalls(1), 1);

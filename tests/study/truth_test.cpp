@@ -101,6 +101,14 @@ TEST(Truth, WavesAndSwingsKeepTheirHeight) {
   expectWithin(piston, "level", 0.06);
 }
 
+// A channel of four particles across. Where nothing evens out the packing that the wave has stretched, the
+// crest ends half as high again as it began.
+TEST(Truth, TheSolitaryWaveDoesNotGrow) {
+  const TruthFindings found = findings("solitary_wave", {"/particle_spacing=0.03"});
+  expectWithin(found, "speed", 0.08);
+  expectWithin(found, "crest", 0.4);
+}
+
 // With four particles across, the water does not swing at all: it stops where the levels are the same.
 TEST(Truth, FromPositionsTheUTubeStopsInTheMiddle) {
   expectWithin(ofPositions("u_tube", {"/particle_spacing=0.025", "/duration=2"}), "first swing", 1.08);
