@@ -133,9 +133,17 @@ stages::ErrorSum computeLambdaOfRange(StepState& state, std::size_t begin, std::
 // stretched: pairs come nearer than three quarters of a spacing, read denser than fluid at rest, and a wave
 // that lifts the fluid by that grows. So what moves positions alone evens the packing out, too: it goes down
 // the density's gradient [LXSR],
-//   dx_i -= e_i ((m/rho0) sum_j grad W_ij - rho_i/rho0 grad gamma_i),
+//   dx_i -= d_i ((m/rho0) sum_j grad W_ij - rho_i/rho0 grad gamma_i),
 // by the push of a density error of 0.03 dt / T, T being that of the projection; inside only, for
 // at the surface there is a gradient by nature.
+
+/// How far particle i goes down the density's gradient, as a lambda over gamma.
+inline float eveningOf(const StepState& state, std::size_t i) {
+  constexpr float kError = 0.03F;
+  if (!state.takesPressure()) return 0;
+  return kError * state.fallen() / state.lattice.squaredGradients *
+         ProjectionBuffers::inside(state.density[i]);
+}
 
 /// Sum over the neighbours of (w_i + w_j) times the push of the pair kernel, without its constant.
 template <class Kernel, class Centre>
@@ -143,7 +151,7 @@ HWY_INLINE PairSums pushOfPairs(const StepState& state, const Centre& centre, st
   using Pair = KernelVectors<PairKernel<Kernel>>;
   const Pairs d;
   const Float4* const others = state.paired.data();
-  const PairVector own = hn::Set(d, others[i].w - state.evening(i));
+  const PairVector own = hn::Set(d, others[i].w - eveningOf(state, i));
   PairVector x = hn::Zero(d), y = hn::Zero(d), z = hn::Zero(d);
   Coincidence<Pair> coincidence;
   const std::span<const std::uint32_t> list = state.neighbours.groups(i);
@@ -180,7 +188,7 @@ void moveRange(StepState& state, float weight, std::size_t begin, std::size_t en
     at.z = hn::MulAdd(pairScale, sums.z, at.z);
     if (wallPush) {
       const Vectors wall = gatherAtWalls(state.wallSlot.data(), first, count, [&state](std::size_t i) {
-        return Vec3f((state.wallPush(i) - state.evening(i) * state.density[i]) *
+        return Vec3f((state.wallPush(i) - eveningOf(state, i) * state.density[i]) *
                      state.wallSlots[state.wallSlot[i]].sample.pairGradient);
       });
       at.x = hn::NegMulAdd(support, wall.x, at.x);

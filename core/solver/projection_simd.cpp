@@ -9,7 +9,7 @@
 //   sum_j F_ij (phi_i - phi_j) + s_i phi_i
 //     = t_i (m/rho0) sum_j B_i grad W_ij . (v*_i - v*_j)              compression by the neighbours
 //     - 2 rho_i/rho0 grad gamma_i . (v*_i - e h/2 L_i n_i - v_wall)   and by the wall
-//     + gamma_i min(rho_i/rho0 - 1, 0) / T                            room that less dense fluid has
+//     + gamma_i min(rho_i/rho0 - 1, 0) / dt                           room that less dense fluid has
 //   F_ij = -2 (m/rho0) W'(r_ij) / r_ij
 //
 //   grad phi_i = B_i (m/rho0) sum_j (phi_j - phi_i) grad W_ij
@@ -20,9 +20,7 @@
 // of pairs, B = 1 and t = 1, stays towards the surface, where one side is missing and B grows. Beside a plane
 // the plain sum of a continuum reads what a strain L moves along the normal n, e h grad gamma . L n, which B
 // leaves out: half of what the velocity changes on the way e h to the wall puts it back, e being what
-// gamma(e) says. Room closes in the time T rather than in a step: what a step takes of it at once comes back
-// as a push in the next, and water at rest trembles. T is half the time in which a particle falls by its
-// spacing, and not less than a step.
+// gamma(e) says.
 //
 // The wall is in the divergence alone: by Gauss's theorem the kernel's missing part is a flux through it, and
 // the velocity there is the wall's, so that the same flux is missing from the Laplacian; twice, for F_ij is
@@ -44,6 +42,8 @@
 // spacing, whatever the time step:
 //
 //   v_i -= nu dt sum_j F_ij (v*_i - v*_j),   nu = 0.2 spacing^2 / T
+//
+// T being half the time in which a particle falls by its spacing, and not less than a step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -92,8 +92,7 @@ void measureRange(StepState& state, std::size_t begin, std::size_t end) {
   const Float4* const velocities = state.previous.data();
   ProjectionBuffers& out = state.projection;
   const float slope = state.lattice.massRatio * Shape::kSlope;
-  const float support = state.supportRadius,
-              toRoom = support * support / state.timeStep * (state.fallen() > 0 ? state.fallen() : 1);
+  const float support = state.supportRadius, toRoom = support * support / state.timeStep;
   const PairVector toFactor = hn::Set(d, -2 * slope);
   const bool added = state.addsWallDensity();
   state.neighbours.makePairValues(begin / kChunk);

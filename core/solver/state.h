@@ -211,16 +211,9 @@ struct StepState : FluidState, StepBuffers, StepRecord {
   float wallPush(std::size_t i) const {
     return addsWallDensity() ? lambda[i] : lambda[i] * density[i] / densityGamma(gamma[i]);
   }
-  /// The step as a part of the time in which it closes room and evens out a packing: half that in which a
+  /// The step as a part of the time that takes out noise and evens out a packing: half that in which a
   /// particle falls by its spacing, and not less than a step (1).
   float fallen() const { return std::min(timeStep * 2 * std::sqrt(0.5F * gravity.norm() / spacing), 1.0F); }
-  /// How far particle i goes down the density's gradient in an iteration, as a lambda; 0 where velocities
-  /// come from positions. See constraint_simd.cpp.
-  float evening(std::size_t i) const {
-    constexpr float kError = 0.03F;
-    if (!takesPressure()) return 0;
-    return kError * fallen() / lattice.squaredGradients * ProjectionBuffers::inside(density[i]);
-  }
   /// What the sum of the neighbours is divided by: gamma, and with a pressure what fluid at rest has of it.
   float densityGamma(float g) const { return takesPressure() ? g * lattice.besideWalls(g) : g; }
   /// Its derivative with respect to gamma.

