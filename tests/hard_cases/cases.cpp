@@ -129,8 +129,7 @@ void addBrokenMeshes(std::vector<HardCase>& cases) {
 
 /// What does not hold all that it states with velocities by projection: "What falls short" in README.md.
 bool shortByProjection(const std::string& name) {
-  static const std::set<std::string> kShort{"lone_corner", "lone_wedge", "particles_3",
-                                            "gap_0.5",     "column",     "gravity_1000"};
+  static const std::set<std::string> kShort{"lone_wedge", "gap_0.5", "column", "gravity_1000"};
   return kShort.contains(name);
 }
 
